@@ -3,6 +3,7 @@
 
 mod bank;
 mod refused;
+mod robust;
 
 use std::sync::OnceLock;
 
@@ -98,7 +99,7 @@ const MAPS: &str = "--reference none.json --inclusion inclusion.json";
 
 /// The answer in JSON, what was said, and the code of the end.
 fn asked(arguments: &str) -> (Value, String, Option<i32>) {
-    let output = place().run(&format!("detect {arguments} --format json"));
+    let output = place().run(&format!("detect --model exact {arguments} --format json"));
     let said = text(&output.stderr).to_string();
     let answer = serde_json::from_slice(&output.stdout);
     (answer.expect(&said), said, output.status.code())
@@ -264,7 +265,7 @@ fn a_record_that_cannot_be_judged_is_neither_and_says_why() {
     let maps = format!("{MAPS} --depth-mm 2 --noise-sd-n 0.1 {KNOWN}");
     let bank = format!("--bank bank.json --noise-sd-n 0.03 {KNOWN}");
     for arguments in [maps, bank] {
-        let output = place().run(&format!("detect with.csv {arguments}"));
+        let output = place().run(&format!("detect --model exact with.csv {arguments}"));
         assert_eq!(output.status.code(), Some(3), "{output:?}");
         let told: Vec<&str> = text(&output.stderr).lines().collect();
         let words = "palpate: with.csv: cannot be judged: there is more noise than was stated";
@@ -297,7 +298,7 @@ fn the_last_line_says_what_was_decided_known_and_fitted() {
         ("with.csv", "--depth-mm 3", "Inclusion", estimated, usual),
         ("with.csv", &white, "Inclusion", stated, known),
     ] {
-        let table = place().succeed(&format!("detect {trace} {MAPS} {more}"));
+        let table = place().succeed(&format!("detect --model exact {trace} {MAPS} {more}"));
         let expected = format!("{found} detected, {noise}. {taken}");
         assert_eq!(table.lines().last(), Some(&*expected));
     }
@@ -314,7 +315,9 @@ fn a_tolerance_that_no_map_can_count_is_told() {
     }
     let maps = "--reference none-3.json --inclusion inclusion-3.json";
     let told = |more: &str| {
-        let output = place().run(&format!("detect with.csv {maps} {USUAL} {more}"));
+        let output = place().run(&format!(
+            "detect --model exact with.csv {maps} {USUAL} {more}"
+        ));
         assert_eq!(output.status.code(), Some(0));
         text(&output.stderr).to_string()
     };
@@ -346,10 +349,10 @@ fn a_trace_over_time_is_the_same_trace() {
 // Verifies: CLI-003.
 #[test]
 fn people_get_a_table_and_no_decision_is_a_failure() {
-    let table = place().succeed("detect with.csv --bank bank.json --noise-sd-n 0.1");
+    let table = place().succeed("detect --model exact with.csv --bank bank.json --noise-sd-n 0.1");
     assert!(table.starts_with("decision  "), "{table}");
     assert_has(&table, "position, mm|95 % interval");
-    place().succeed(&format!("detect without.csv {MAPS} {USUAL}"));
+    place().succeed(&format!("detect --model exact without.csv {MAPS} {USUAL}"));
 }
 
 /// The answer to `trace` but for its name, and what was said.
@@ -399,7 +402,7 @@ fn samples_beyond_the_maps_are_trimmed_and_counted() {
 #[test]
 fn maps_that_do_not_belong_together_are_taken_where_they_are_meant_and_told() {
     let maps = "--reference inclusion.json --inclusion inclusion.json --any-maps";
-    let output = place().run(&format!("detect with.csv {maps} {USUAL}"));
+    let output = place().run(&format!("detect --model exact with.csv {maps} {USUAL}"));
     assert_eq!(output.status.code(), Some(2));
     let told = "warning|the reference map already contains an inclusion|the maps do not differ";
     assert_has(text(&output.stderr), told);

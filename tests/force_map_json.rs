@@ -127,7 +127,7 @@ fn other_schemas_and_newer_versions_are_refused_first() {
         // A newer file has keys that we do not know, and lacks some that we do.
         let text =
             format!("{{\"schema_version\": {version}, \"new\": [], \"schema\": {SCHEMA:?}}}");
-        let expected = "expected 1, which is what this program reads";
+        let expected = "but must be 1, which is what this program reads";
         let expected = format!("map.json: schema_version = {version}, {expected}");
         assert_eq!(read(&text), Err(expected));
     }

@@ -23,6 +23,7 @@ mod psychophysics_command;
 mod reach_command;
 mod real_records;
 mod report_page;
+mod robust_families;
 mod run_command;
 mod second_opinion;
 mod study_command;

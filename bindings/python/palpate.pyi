@@ -177,6 +177,17 @@ class Bank:
     def maps(self) -> list[ForceMap]: ...
     @property
     def axes(self) -> dict[str, list[float]]: ...
+    def judge(
+        self,
+        positions_mm: ArrayLike,
+        forces_n: ArrayLike,
+        noise_sd_n: ArrayLike | None = None,
+        known: Sequence[str] = (),
+        zeroed: bool = False,
+        sure: float = 0.95,
+        prior: ArrayLike | None = None,
+        prior_h1: float = 0.5,
+    ) -> dict[str, Any]: ...
     def locate(
         self,
         positions_mm: ArrayLike,

@@ -1,5 +1,5 @@
 //! Inclusion probing after Yan, Scott and Fearing (1999): the force on a rigid probe that presses into a gel, the decision whether a hard
-//! inclusion lies in it, and its playback to a hand. This crate is what computes: 11,200 lines of code, on
+//! inclusion lies in it, and its playback to a hand. This crate is what computes: 12,700 lines of code, on
 //! the core, [`palpate_core`], whose modules it exports. Read it in this order:
 //!
 //! | module | content | paper |
@@ -9,6 +9,7 @@
 //! | [`fem`] | finite elements and contact | §3.1 |
 //! | [`force_map`] | force tables and their files | §3, §4 |
 //! | [`trace`], [`rows`] | a recorded sweep against two of them; the answer, for programs and for people | |
+//! | [`robust`] | the same, whatever gel, motion and sensor do to the forces | §2 |
 //! | [`bank`], [`chart`] | inclusions of any place and size; the charts of both | §5 |
 //! | [`servo`] | from a table to a force; the kernel is of the core | §4 |
 //! | [`hid`] | the device, the loop, the simulated display; the reports are of the core | §4 |
@@ -64,6 +65,7 @@ pub mod journal;
 pub mod oracle;
 pub mod phantom;
 pub mod refusal;
+pub mod robust;
 pub mod rows;
 pub mod servo;
 pub mod text;

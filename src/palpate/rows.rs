@@ -6,8 +6,10 @@ use serde_json::{Value, json};
 use crate::bank::{Bank, Location, Parameter};
 use crate::detect::Decision;
 use crate::detect::nuisance::{SubspaceTest, Threshold};
+use crate::force::Force;
 use crate::force_map::SAME_POSITION;
 use crate::refusal::Refusal;
+use crate::robust::{RobustAnswer, RobustPlace};
 use crate::trace::{Cause, Fit, Judgement};
 
 /// The probability of the interval of each parameter of an inclusion.
@@ -63,6 +65,17 @@ impl Rows {
         let line = number.map(|number| [label.into(), digits(number)]);
         let value = number.into();
         self.0.push(Row { key, value, line });
+    }
+
+    /// Adds a number of each of several sweeps, or the number of one.
+    pub fn list(&mut self, key: &'static str, label: &str, numbers: &[f64]) {
+        match numbers {
+            [number] => self.number(key, label, *number),
+            _ => {
+                let text: Vec<String> = numbers.iter().map(|number| digits(*number)).collect();
+                self.shown(key, label, json!(numbers), text.join(", "));
+            }
+        }
     }
 
     /// Adds a quantity that people see as `text`.
@@ -134,6 +147,106 @@ impl Rows {
         let label = "effective samples, both channels";
         self.shown("effective_samples", label, samples, format!("{samples:.0}"));
         self.number("level", "force level / reference map", fit.level);
+    }
+}
+
+impl RobustAnswer {
+    /// The decision, what explains the record, and where the inclusion of a bank lies.
+    ///
+    /// Implements: CLI-043, ROB-041, ROB-042, ROB-043.
+    pub fn rows(&self, place: Option<(&Bank, &RobustPlace)>) -> Rows {
+        let mut rows = Rows::default();
+        rows.value("model", "robust");
+        rows.decision(self.decision, &self.causes);
+        let is_weak = self.causes == [Cause::TooWeak];
+        let is_compared = self.decision.is_some() || is_weak;
+        numbers! { rows;
+            posterior_h1: "posterior P(inclusion)", is_compared.then_some(self.posterior);
+            theta: "theta (log-likelihood ratio)", is_compared.then_some(self.theta);
+        }
+        for (hypothesis, key, label) in [
+            (0, "class_without", "without inclusion, as if"),
+            (1, "class_with", "with an inclusion, as if"),
+        ] {
+            if let Some((name, share)) = self.likeliest_class(hypothesis) {
+                let text = format!("{name} ({:.0} %)", 100.0 * share);
+                rows.shown(
+                    key,
+                    label,
+                    json!({"class": name, "probability": share}),
+                    text,
+                );
+            }
+        }
+        if let Some((bank, place)) = place.filter(|_| is_compared) {
+            let (key, deepest) = ("no_inclusion_down_to_m", place.none_down_to);
+            match deepest.filter(|_| self.decision != Some(Decision::Inclusion)) {
+                Some(depth) => {
+                    let text = format!("{:.3}", 1e3 * depth);
+                    rows.shown(key, "no inclusion down to, mm", depth, text);
+                }
+                None => rows.value(key, deepest),
+            }
+            place_rows(bank, place, &mut rows);
+        }
+        let channels =
+            |of: fn(&Force<f64>) -> f64| self.noise_sd.iter().map(of).collect::<Vec<_>>();
+        rows.list("level", "force level / reference map", &self.levels);
+        rows.list(
+            "noise_sd_lateral_n",
+            "noise sd, lateral, N",
+            &channels(|sd| sd.lateral),
+        );
+        rows.list(
+            "noise_sd_normal_n",
+            "noise sd, normal, N",
+            &channels(|sd| sd.normal),
+        );
+        rows.value("glitches", json!(self.glitches));
+        rows
+    }
+
+    /// The likeliest class without (0) or with (1) an inclusion, and its probability.
+    fn likeliest_class(&self, hypothesis: usize) -> Option<(&'static str, f64)> {
+        let classes = self
+            .classes
+            .iter()
+            .map(|(name, shares)| (*name, shares[hypothesis]));
+        classes.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// The interval of each parameter that the bank varies.
+fn place_rows(bank: &Bank, place: &RobustPlace, rows: &mut Rows) {
+    for (axis, parameter) in Parameter::ALL.into_iter().enumerate() {
+        let Some(interval) = place.intervals[axis] else {
+            continue;
+        };
+        let (key, scale, label) = parameter_row(parameter);
+        let shown = |x: f64| format!("{:.3}", scale * x);
+        let range = match [interval.lower, interval.upper].map(|end| end.map(shown)) {
+            [Some(low), Some(high)] => format!("{low} to {high}"),
+            [Some(low), None] => format!("from {low}"),
+            [None, Some(high)] => format!("up to {high}"),
+            [None, None] => "wider than the bank".into(),
+        };
+        let text = format!("{}, 95 % interval {range}", shown(interval.estimate));
+        let ends = [interval.lower, interval.upper];
+        let value =
+            json!({"estimate": interval.estimate, "interval": ends, "unit": parameter.unit()});
+        rows.shown(key, label, value, text);
+    }
+    rows.value("hypotheses", bank.maps().len());
+    rows.value("several_inclusions", place.several);
+}
+
+/// The key of a parameter, its scale for people and their words for it.
+fn parameter_row(parameter: Parameter) -> (&'static str, f64, &'static str) {
+    match parameter {
+        Parameter::Position => ("position", 1e3, "position, mm"),
+        Parameter::Depth => ("inclusion_depth", 1e3, "inclusion depth, mm"),
+        Parameter::Diameter => ("diameter", 1e3, "diameter, mm"),
+        Parameter::Modulus => ("youngs_modulus", 1e-3, "Young's modulus, kPa"),
     }
 }
 
@@ -210,12 +323,7 @@ impl Location {
             let (&[first, .., last], sd) = (&bank.axes()[axis][..], self.bound.sd[axis]) else {
                 continue;
             };
-            let (key, scale, label) = match parameter {
-                Parameter::Position => ("position", 1e3, "position, mm"),
-                Parameter::Depth => ("inclusion_depth", 1e3, "inclusion depth, mm"),
-                Parameter::Diameter => ("diameter", 1e3, "diameter, mm"),
-                Parameter::Modulus => ("youngs_modulus", 1e-3, "Young's modulus, kPa"),
-            };
+            let (key, scale, label) = parameter_row(parameter);
             let estimate = self.place.estimate[axis];
             let interval = self.place.interval(axis, CREDIBLE)?;
             let ends = [interval.lower, interval.upper];

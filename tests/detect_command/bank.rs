@@ -54,7 +54,9 @@ fn the_bank_finds_an_inclusion_that_was_moved() {
     assert!(found.get("diameter").is_none() && found.get("youngs_modulus").is_none());
     let without = located("without.csv", &format!("{KNOWN} {bound}"));
     assert_eq!(without["decision"], "no_inclusion");
-    let error = place().refused(&format!("detect moved.csv {BY_BANK} --depth-mm 3.1"));
+    let error = place().refused(&format!(
+        "detect --model exact moved.csv {BY_BANK} --depth-mm 3.1"
+    ));
     assert!(error.contains("0.003 m, for which the bank is"), "{error}");
     // Beside what is unknown by default, the same place.
     let found = located("moved.csv", "");
@@ -82,11 +84,10 @@ fn a_prior_weighs_the_inclusions_of_the_bank() {
     );
     assert_eq!(found["prior"], "prior.csv");
     place().write("elsewhere.csv", format!("{head}1,2.6,6.4,1200,1\n"));
-    let error = place().refused(&format!("detect moved.csv {BY_BANK} --prior elsewhere.csv"));
-    assert_has(
-        &error,
-        "elsewhere.csv:2: an inclusion that is not in the bank",
-    );
+    let error = place().refused(&format!(
+        "detect --model exact moved.csv {BY_BANK} --prior elsewhere.csv"
+    ));
+    assert_has(&error, "elsewhere.csv:2: this inclusion is not in the bank");
 }
 
 // Verifies: CLI-140.

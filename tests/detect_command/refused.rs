@@ -5,7 +5,12 @@ use super::*;
 // Verifies: CLI-041, CLI-042, CLI-003, CLI-048, CLI-140.
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
-    place().refuses("detect", |words| format!("detect with.csv {MAPS} {words}"));
+    place().refuses("detect", |words| {
+        format!("detect --model exact with.csv {MAPS} {words}")
+    });
+    place().refuses("detect robust", |words| {
+        format!("detect {} --depth-mm 3", words.replace("MAPS", MAPS))
+    });
 }
 
 // Verifies: TRC-004, TRC-008, TRC-024, TRC-025, CLI-047, CLI-140, MAP-033.
@@ -32,6 +37,9 @@ fn bad_files_are_refused_with_file_and_line() {
     other["phantom"]["layer"][0]["material"]["youngs_modulus_pa"] = 7.5e4.into();
     place().write("other-gel.json", other.to_string());
     place().refuses("detect files", |words| {
-        format!("detect {} {USUAL}", words.replace("MAPS", MAPS))
+        format!(
+            "detect --model exact {} {USUAL}",
+            words.replace("MAPS", MAPS)
+        )
     });
 }

@@ -1,12 +1,14 @@
 //! Banks of inclusions, and records searched with them.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 
 use palpate::bank::{self, BankPlan, BankSearch, Location};
 use palpate::detect::Decision;
 use palpate::fem::FemError;
 use palpate::force_map::ForceMap as Map;
 use palpate::refusal::Refusal;
+use palpate::robust::{GelChanges, Part, RobustQuestion};
 use palpate::rows::CREDIBLE;
 use palpate::trace::{Correlation, Criterion, Noise, Question, Record, Unknown};
 use pyo3::prelude::*;
@@ -37,7 +39,27 @@ fn named<T: Serialize>(of: impl Fn(usize, i32) -> T) -> Value {
 /// The forces of one gel without an inclusion, and with each of those that may be there: a full grid of positions, depths, diameters
 /// and Young's moduli. Bank(reference, maps) is the bank of force maps.
 #[pyclass(frozen, module = "palpate")]
-pub struct Bank(bank::Bank);
+pub struct Bank {
+    bank: bank::Bank,
+    /// The gels beside that of the bank, once they were asked for.
+    changes: OnceLock<Option<GelChanges>>,
+}
+
+impl Bank {
+    fn of(bank: bank::Bank) -> Bank {
+        let changes = OnceLock::new();
+        Bank { bank, changes }
+    }
+
+    /// The gels beside that of the bank, computed the first time.
+    fn changes(&self) -> PyResult<Option<&GelChanges>> {
+        if let Some(known) = self.changes.get() {
+            return Ok(known.as_ref());
+        }
+        let found = GelChanges::new(self.bank.reference(), self.bank.depth()).map_err(refused)?;
+        Ok(self.changes.get_or_init(|| found).as_ref())
+    }
+}
 
 /// The maps of a plan, the reference first; on all processors, a few at a time, so that this thread hears of Ctrl-C.
 fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
@@ -126,7 +148,7 @@ impl Bank {
     fn new(reference: &ForceMap, maps: Vec<PyRef<ForceMap>>) -> PyResult<Bank> {
         let maps = maps.iter().map(|map| map.0.clone()).collect();
         let bank = bank::Bank::new(reference.0.clone(), maps);
-        Ok(Bank(bank.map_err(refused)?))
+        Ok(Bank::of(bank.map_err(refused)?))
     }
 
     /// The bank for the one inclusion of phantom, varied: x of its centre (offsets_mm), depth, diameter, all in mm, and Young's modulus in
@@ -168,43 +190,43 @@ impl Bank {
         }
         let mut maps = py.detach(|| solved(&plan, progress.as_ref()))?;
         let reference = maps.remove(0);
-        Ok(Bank(bank::Bank::new(reference, maps).map_err(refused)?))
+        Ok(Bank::of(bank::Bank::new(reference, maps).map_err(refused)?))
     }
 
     /// The bank in a file, as palpate bank writes it.
     #[staticmethod]
     fn read(path: PathBuf) -> PyResult<Bank> {
-        Ok(Bank(bank::Bank::read(&path).map_err(refused)?))
+        Ok(Bank::of(bank::Bank::read(&path).map_err(refused)?))
     }
 
     /// Writes the bank to a file, for palpate detect too.
     fn write(&self, path: PathBuf) -> PyResult<()> {
-        Ok(std::fs::write(path, self.0.to_json())?)
+        Ok(std::fs::write(path, self.bank.to_json())?)
     }
 
     /// The depth of the probe, mm.
     #[getter]
     fn probe_depth_mm(&self) -> f64 {
-        in_unit(self.0.depth(), 3)
+        in_unit(self.bank.depth(), 3)
     }
 
     /// The forces without an inclusion.
     #[getter]
     fn reference(&self) -> ForceMap {
-        ForceMap(self.0.reference().clone())
+        ForceMap(self.bank.reference().clone())
     }
 
     /// The forces with each inclusion: those of all positions, then those of the next depth, diameter, modulus.
     #[getter]
     fn maps<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        PyList::new(py, self.0.maps().iter().cloned().map(ForceMap))
+        PyList::new(py, self.bank.maps().iter().cloned().map(ForceMap))
     }
 
     /// The values of position_mm, depth_mm, diameter_mm (mm) and youngs_modulus_kpa (kPa), lists in a dictionary.
     #[getter]
     fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let values = |axis: usize, power| {
-            let values = self.0.axes()[axis].iter();
+            let values = self.bank.axes()[axis].iter();
             values
                 .map(|&value| in_unit(value, power))
                 .collect::<Vec<_>>()
@@ -212,7 +234,56 @@ impl Bank {
         python(py, &named(values))
     }
 
-    /// Is one of the bank's inclusions in a record, and where? A dictionary: inclusion (True, False, or None where the record cannot be
+    /// Is an inclusion of the bank in a record, whatever gel, motion and sensor did to it? The answer of palpate detect --bank with the keys
+    /// of its JSON, in SI, in a dictionary, and inclusion (True, False, or None where the record cannot be judged, for the causes).
+    ///
+    /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N. noise_sd_n: of a sample in N, one for both
+    /// channels or (lateral, normal), or None if the record tells. known: what does not disturb the sweep, of smooth, gel, support,
+    /// stage, surface, tilt, friction, relaxation and walk. zeroed: whether the sensor was set to zero on the gel. sure: the posterior from
+    /// which there is an inclusion. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion. The first call
+    /// computes the gels beside that of the bank, in seconds.
+    #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, known=vec![], zeroed=false, sure=0.95, prior=None, prior_h1=0.5),
+        text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, known=(), zeroed=False, sure=0.95, prior=None, prior_h1=0.5)")]
+    #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
+    fn judge<'py>(
+        &self,
+        py: Python<'py>,
+        positions_mm: Any<'_, 'py>,
+        forces_n: Any<'_, 'py>,
+        noise_sd_n: Option<Any<'_, 'py>>,
+        known: Vec<String>,
+        zeroed: bool,
+        sure: f64,
+        prior: Option<Any<'_, 'py>>,
+        prior_h1: f64,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let record = record(positions_mm, forces_n)?;
+        let prior = prior.map(|prior| list("prior", prior, 0)).transpose()?;
+        let part = |name: String| {
+            let found = Part::KNOWN.into_iter().find(|of| of.to_string() == name);
+            let names = Part::KNOWN.map(|of| of.to_string()).join(", ");
+            found.ok_or_else(|| refused(Refusal::value("known", name, format!("one of {names}"))))
+        };
+        let known = known.into_iter().map(part).collect::<PyResult<Vec<_>>>()?;
+        let question = RobustQuestion {
+            known: &known,
+            is_tared: zeroed,
+            noise_sd: noise_sd_n.map(|sd| pair("noise_sd_n", sd)).transpose()?,
+            prior_h1,
+            sure,
+        };
+        let found = py.detach(|| -> PyResult<_> {
+            let found = question.locate(&self.bank, prior.as_deref(), self.changes()?, &[&record]);
+            found.map_err(refused)
+        });
+        let (answer, place) = found?;
+        let told = python(py, &answer.rows(Some((&self.bank, &place))))?;
+        let decided = answer.decision.map(|found| found == Decision::Inclusion);
+        told.set_item("inclusion", decided)?;
+        Ok(told)
+    }
+
+    /// As palpate detect --model exact: is one of the bank's inclusions in a record, and where? A dictionary: inclusion (True, False, or None where the record cannot be
     /// judged, for the causes) and the answer of palpate detect with the keys of its JSON, in SI (decision, posterior_h1, theta_max, eta,
     /// gamma ...); likeliest, estimate, mean and interval_95 of each parameter in mm and kPa, if there is an inclusion; places,
     /// shape (m, 4), in the order of the bank's axes, and their probabilities, shape (m,).
@@ -248,23 +319,23 @@ impl Bank {
         let prior = prior.map(|prior| list("prior", prior, 0)).transpose()?;
         let search = BankSearch {
             question: Question {
-                depth: self.0.depth(),
+                depth: self.bank.depth(),
                 depth_tolerance: si("depth_tolerance_mm", depth_tolerance_mm, -3)?,
                 unknown: &unknowns(unknown)?,
                 noise: Noise { sd, correlation },
                 criterion: criterion(max_miss, max_false_alarm)?,
                 prior_h1,
             },
-            bank: &self.0,
+            bank: &self.bank,
             prior: prior.as_deref(),
             simulations: None,
         };
         let found = py.detach(|| search.locate(&record));
-        told(py, &self.0, &found.map_err(refused)?)
+        told(py, &self.bank, &found.map_err(refused)?)
     }
 
     fn __repr__(&self) -> String {
-        let (maps, depth) = (self.0.maps().len(), self.probe_depth_mm());
+        let (maps, depth) = (self.bank.maps().len(), self.probe_depth_mm());
         format!("<Bank of {maps} inclusions, probe at {depth} mm>")
     }
 }

@@ -58,6 +58,25 @@ def test_an_inclusion_is_found_where_it_is(bank):
     assert wrong["inclusion"] is None and "force_unit" in wrong["causes"]
 
 
+def test_an_inclusion_is_judged_whatever_the_gel_does(bank):
+    x = np.linspace(-8, 8, 161)
+    gel = bank.reference.sweep(4, x)
+    bowed = gel - [[0], [1]] * (0.25 * (x / 8) ** 2)
+    # To the exact model the bow is an inclusion; the robust one does not fall for it.
+    assert bank.locate(x, noisy(bowed), noise_sd_n=0.05, white=True)["inclusion"] is True
+    assert bank.judge(x, noisy(bowed), noise_sd_n=0.05)["inclusion"] is not True
+    disc = bank.maps[7].sweep(4, x)
+    found = bank.judge(x, noisy(disc), noise_sd_n=0.02, known=["gel", "support", "smooth"])
+    assert found["inclusion"] is True and found["model"] == "robust", found
+    assert found["position"]["interval"][0] < 0 < found["position"]["interval"][1]
+    assert bank.judge(x, noisy(gel), zeroed=True)["inclusion"] is None
+    assert bank.judge(x, 1000 * gel)["causes"] == ["force_unit"]
+    with pytest.raises(palpate.Refused, match="known"):
+        bank.judge(x, gel, known=["moon"])
+    with pytest.raises(palpate.Refused):
+        bank.judge(x, gel, prior_h1=1.5)
+
+
 def test_questions_that_make_no_sense_are_refused(bank):
     x = bank.reference.laterals_mm
     forces = bank.reference.row(4)

@@ -95,7 +95,12 @@ impl Mesh {
     fn forecast(phantom: &Phantom, size: f64) -> Result<(SizeField, f64), FemError> {
         let asked = format!("mesh size {} mm", size * 1e3);
         let is_right = size > 0.0 && size.is_finite();
-        Refusal::state(&asked, "a finite number above 0").when(!is_right)?;
+        let wrong = Refusal::value(
+            "mesh size",
+            format!("{} mm", size * 1e3),
+            "a finite number above 0",
+        );
+        wrong.when(!is_right)?;
         let field = SizeField::new(phantom, size);
         let nodes = field.expected_nodes();
         let found = format!(

@@ -65,9 +65,7 @@ fn refusal(path: &KeyPath, message: &str) -> Refusal {
         path if path == "." => String::new(),
         path => path,
     };
-    let (found, expected) = message
-        .split_once(", but must be ")
-        .unwrap_or((message, ""));
+    let (found, expected) = message.split_once(", expected ").unwrap_or((message, ""));
     let expected = match expected {
         "f64" => "a number",
         "u32" | "u64" | "usize" => "a whole number, at least 0",

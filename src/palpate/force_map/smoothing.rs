@@ -199,10 +199,10 @@ mod tests {
                 0.99e-3,
                 "3 lateral positions are within 0.00099 m of -0.001 m; choose a half-width with at least 4",
             ),
-            (0.0, "half-width = 0, expected"),
-            (-1.0, "half-width = -1, expected"),
-            (f64::NAN, "half-width = NaN, expected"),
-            (f64::INFINITY, "half-width = inf, expected"),
+            (0.0, "half-width = 0, but must be"),
+            (-1.0, "half-width = -1, but must be"),
+            (f64::NAN, "half-width = NaN, but must be"),
+            (f64::INFINITY, "half-width = inf, but must be"),
         ] {
             let error = table.smoothed(half_width).unwrap_err().to_string();
             assert!(error.starts_with(expected), "{error}");

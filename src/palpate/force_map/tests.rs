@@ -124,8 +124,8 @@ fn bad_matrices_are_refused() {
     let transposed = Matrix::from_fn(3, 2, |_, _| 0.0);
     assert_error(
         over_poses(good.clone(), transposed.clone()),
-        "lateral_force_n has 3 rows and 2 columns, \
-         expected 2 rows (one a depth) and 3 columns (one a lateral position)",
+        "lateral_force_n has 3 rows and 2 columns; \
+         give 2 rows (one a depth) and 3 columns (one a lateral position)",
     );
     assert_error(
         over_poses(transposed, good.clone()),
@@ -147,7 +147,7 @@ fn a_certificate_is_checked_number_by_number() {
     assert_eq!(computed(|_| ()).map(|_| ()), Ok(()));
     for bad in [f64::NAN, f64::INFINITY, -1e-30] {
         let refuses = |key: &str, spoil: &dyn Fn(&mut Certificate)| {
-            let expected = "expected a finite number, at least 0";
+            let expected = "but must be a finite number, at least 0";
             let message = refusal(computed(spoil));
             assert_eq!(message, format!("certificate.{key} = {bad}, {expected}"));
         };
@@ -160,8 +160,8 @@ fn a_certificate_is_checked_number_by_number() {
     }
     assert_error(
         computed(|c| c.min_det = matrix(&[[1.0, 1.0], [0.9, 0.8]])),
-        "certificate.min_det has 2 rows and 2 columns, \
-         expected 2 rows (one a depth) and 3 columns (one a lateral position)",
+        "certificate.min_det has 2 rows and 2 columns; \
+         give 2 rows (one a depth) and 3 columns (one a lateral position)",
     );
     let spoilt = matrix(&[[1.0, 1.0, 1.0], [f64::NAN, 0.8, 0.85]]);
     assert_error(
@@ -176,7 +176,7 @@ fn the_smallest_determinant_is_the_matrixs_own() {
     assert_error(
         computed(|c| c.smallest_det.det = 0.9),
         "certificate.smallest_det = 0.9 at depth 0.001 m, lateral 0.002 m, \
-         expected the smallest entry of min_det, 0.8, and its pose",
+         but must be the smallest entry of min_det, 0.8, and its pose",
     );
     assert!(computed(|c| c.smallest_det.lateral = 0.005).is_err());
     assert!(computed(|c| c.smallest_det.depth = 0.0).is_err());
@@ -241,8 +241,8 @@ fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
     }
     assert_error(
         with(-1.1e-9).mirrored(),
-        "lateral force -0.0000000011 N at depth 0.001 m, x = 0, \
-         expected at most 1e-9 N in a symmetric map",
+        "lateral force -0.0000000011 N at depth 0.001 m, x = 0; \
+         give at most 1e-9 N, or negative positions too",
     );
 }
 

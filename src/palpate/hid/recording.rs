@@ -138,11 +138,11 @@ impl Recording {
     pub fn parse(text: &str) -> Result<Recording, Refusal> {
         let mut lines = (1..).zip(text.lines());
         let (at, first) = lines.next().unwrap_or((1, ""));
-        let what = "recording that begins with format, capabilities and limits";
+        let what = "a recording that begins with format, capabilities and limits";
         let header: Header = read(at, first, what)?;
         let of = &header.limits;
         let limits = Limits::new(of.force_n, of.slew_n, of.release_n, of.watchdog_cycles);
-        let what = "cycle with times, position, force and playing";
+        let what = "the times, position, force and playing of a cycle";
         let cycles = lines.map(|(at, line)| read(at, line, what));
         Ok(Recording {
             capabilities: header.capabilities,
@@ -192,11 +192,11 @@ impl Recording {
 /// Reads a line of JSON; `what` it should be.
 fn read<'a, T: Deserialize<'a>>(at: usize, line: &'a str, what: &str) -> Result<T, Refusal> {
     serde_json::from_str(line)
-        .map_err(|error| refused(at, line, &format!("no {what}: {}", message(&error))))
+        .map_err(|error| refused(at, line, &format!("give {what}: {}", message(&error))))
 }
 
 fn refused(at: usize, line: &str, why: &str) -> Refusal {
-    Refusal::state(format_args!("{:?}: {why}", shortened(line)), "").at(at)
+    Refusal::state(format_args!("{:?}", shortened(line)), why).at(at)
 }
 
 /// A device that reports what was recorded.

@@ -396,8 +396,8 @@ fn a_probe_outside_the_gel_or_at_a_wall_is_refused() {
     assert!(stands(0.0065, 0.010_499) && !stands(0.0065, 0.010_501));
     assert!(stands(0.012, 0.010_499) && !stands(0.012, 0.010_501));
     assert!(stands(0.015_499, 0.0));
-    let depth = "expected at least 0.0 and below 15.5 (the height of the layers)";
-    let lateral = "expected above -11.0 and below 11.0 \
+    let depth = "but must be at least 0.0 and below 15.5 (the height of the layers)";
+    let lateral = "but must be above -11.0 and below 11.0 \
                    (the probe, 6.0 mm to each side when 4.0 mm deep, clears the walls)";
     for (place, found, expected) in [
         ([-0.001, 0.0], "depth_mm = -1.0", depth),

@@ -310,7 +310,7 @@ pub(crate) fn nuisances_of(
 /// ∂F/∂d at the samples, N/m, between the `depths` on either side of `depth`; none if there is no other.
 ///
 /// Implements: TRC-060.
-fn depth_slope(
+pub(crate) fn depth_slope(
     depths: &[f64],
     depth: f64,
     expected: impl Fn(f64) -> Result<Vec<f64>, Refusal>,

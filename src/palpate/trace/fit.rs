@@ -78,6 +78,18 @@ pub enum Cause {
     TooFewSamples,
     /// The signal is there with the other sign.
     Opposite,
+    /// The sensor was at the end of its range.
+    Saturated,
+    /// Too many samples are far from those beside them.
+    Glitches,
+    /// The forces are too small for this gel at this depth.
+    NoContact,
+    /// The sweep is too short to show an inclusion.
+    Narrow,
+    /// The map with the inclusion has the smaller forces.
+    Exchanged,
+    /// Some disturbance explains the record as well as an inclusion does.
+    TooWeak,
 }
 
 impl fmt::Display for Cause {
@@ -90,6 +102,12 @@ impl fmt::Display for Cause {
             Cause::Misfit => "there is more noise than was stated, or a force that the maps do not hold: another offset, drift, gain or depth than is taken as known, or other maps",
             Cause::NoiseTooSmall => "there is less noise than was stated, or the record was smoothed",
             Cause::TooFewSamples => "the noise is so correlated that too few independent samples remain",
+            Cause::Saturated => "the sensor was at the end of its range: many samples have its largest or least force",
+            Cause::Glitches => "too many samples are far from those beside them",
+            Cause::NoContact => "the forces are too small for the maps' gel at this depth: the probe does not touch, or the sensor was set to zero on the gel",
+            Cause::Narrow => "the sweep is shorter than half the radius of the probe: the positions may be in another unit, such as m",
+            Cause::Exchanged => "the map with the inclusion has smaller forces than the reference: the maps may be exchanged",
+            Cause::TooWeak => "the record is too weak to tell an inclusion from what else may bend it",
             Cause::Opposite => "the signal is there with the other sign: the maps may be swapped",
         })
     }

@@ -347,6 +347,14 @@ impl Record {
         &self.positions
     }
 
+    /// How far the probe had moved at each sample, m: from where the record began, whichever way it went.
+    pub fn travelled(&self) -> Vec<f64> {
+        let [(first, start), (last, end)] =
+            [0, self.positions.len() - 1].map(|at| (self.lines[at], self.positions[at]));
+        let way = |x: &f64| if first <= last { x - start } else { end - x };
+        self.positions.iter().map(way).collect()
+    }
+
     /// The recorded force on the probe, N, one sample for each position.
     pub fn forces(&self) -> Force<&[f64]> {
         self.forces.as_deref()

@@ -149,10 +149,10 @@ fn correlations_that_cannot_be_are_refused() {
     let cases = "
         a x 0.5 => correlation[0].inputs = a, x, but must be two of a, b, c
         a a 0.5 => correlation[0].inputs = a, a, but must be two different inputs
-        a b 0.5; b a 0.5 => correlation[1].inputs = b, a, expected
-        a b 1.0 => correlation[0].coefficient = 1, expected
-        a b NaN => correlation[0].coefficient = NaN, expected
-        a b 0.9; b c 0.9; a c -0.9 => the correlations of a, b, c, expected
+        a b 0.5; b a 0.5 => correlation[1].inputs = b, a, but must be two different inputs
+        a b 1.0 => correlation[0].coefficient = 1, but must be
+        a b NaN => correlation[0].coefficient = NaN, but must be
+        a b 0.9; b c 0.9; a c -0.9 => the correlations of a, b, c contradict one another
     ";
     for case in cases.trim().lines().map(str::trim) {
         let (pairs, expected) = case.split_once(" => ").unwrap();
@@ -362,7 +362,10 @@ fn inputs_that_make_no_study_are_refused_with_their_key() {
     );
     let (mean, sd) = (1.0, -1.0);
     let normal = refused(&|input| input.distribution = Distribution::Normal { mean, sd });
-    begins(normal, "input[1].distribution.normal.sd = -1.0, expected");
+    begins(
+        normal,
+        "input[1].distribution.normal.sd = -1.0, but must be",
+    );
 }
 
 // Verifies: STU-001.

@@ -1,5 +1,6 @@
 //! What `palpate detect` is asked.
 
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
@@ -8,14 +9,18 @@ use crate::error::refuse;
 use crate::numbers::{length_or_zero, newtons, position, probability, velocity};
 use crate::{CliError, Format};
 use palpate::force::Force;
+use palpate::robust::Part;
 use palpate::trace::{Correlation, Criterion, Noise, Trace, Unknown};
 
 /// Arguments of `palpate detect`.
 #[derive(Debug, Args)]
 pub struct DetectArguments {
-    /// The recorded sweep: a CSV file with position_mm (or time_s), lateral_force_n and normal_force_n, one row per sample
-    #[arg(value_name = "TRACE.csv")]
-    pub(super) trace: PathBuf,
+    /// The recorded sweep: a CSV file with position_mm (or time_s), lateral_force_n and normal_force_n, one row per sample; several
+    /// with --together
+    #[arg(value_name = "TRACE.csv", required = true)]
+    pub(super) traces: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(super) model: ModelArguments,
     #[command(flatten)]
     pub(super) hypotheses: MapsOrBank,
     #[command(flatten)]
@@ -27,6 +32,32 @@ pub struct DetectArguments {
     /// Output format
     #[arg(long, value_enum, default_value_t = Format::Table)]
     pub(super) format: Format,
+}
+
+/// What the record may hold beside an inclusion.
+#[derive(Debug, Args)]
+pub(super) struct ModelArguments {
+    /// What the record may hold beside noise and an inclusion
+    #[arg(long, value_enum, default_value_t = ModelName::Robust)]
+    pub model: ModelName,
+    /// Posterior probability from which an inclusion is reported; none is reported up to 1 minus this [default: 0.95]
+    #[arg(long, value_name = "P", value_parser = probability, allow_hyphen_values = true)]
+    pub sure: Option<f64>,
+    /// The sensor was set to zero on the gel, so that the forces say nothing of contact
+    #[arg(long)]
+    pub zeroed: bool,
+    /// Takes all traces for sweeps of one place
+    #[arg(long)]
+    pub together: bool,
+}
+
+/// The models by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum ModelName {
+    /// Whatever gels, motions and sensors usually do to the forces.
+    Robust,
+    /// Nothing but what is fitted: the paper's detector.
+    Exact,
 }
 
 /// The forces to compare the record with.
@@ -72,12 +103,12 @@ pub(super) struct MapsOrBank {
 /// Where the probe was.
 #[derive(Debug, Args)]
 pub(super) struct Sweep {
-    /// Indentation depth of the sweep in mm [default with a bank: that of the bank]
-    #[arg(long = "depth-mm", value_name = "D", value_parser = position, allow_hyphen_values = true, required_unless_present = "bank")]
-    pub depth: Option<f64>,
-    /// Largest expected error of --depth-mm, in mm
-    #[arg(long = "depth-tolerance-mm", value_name = "T", value_parser = length_or_zero, allow_hyphen_values = true, default_value = "0.3")]
-    pub depth_tolerance: f64,
+    /// Indentation depth of the sweep in mm, or of each of several [default with a bank: that of the bank]
+    #[arg(long = "depth-mm", value_name = "D", value_parser = position, value_delimiter = ',', allow_hyphen_values = true, required_unless_present = "bank")]
+    pub depths: Vec<f64>,
+    /// Largest expected error of --depth-mm, in mm [default: 0.3]; with --model exact
+    #[arg(long = "depth-tolerance-mm", value_name = "T", value_parser = length_or_zero, allow_hyphen_values = true)]
+    pub depth_tolerance: Option<f64>,
     /// Drops samples outside the lateral range of the maps, and reports how many
     #[arg(long)]
     pub trim: bool,
@@ -92,10 +123,11 @@ pub(super) struct Sweep {
 /// What is known of the sensor and of its noise.
 #[derive(Debug, Args)]
 pub(super) struct NoiseArguments {
-    /// Quantities to take as known instead of fitting: a list of offset, drift, gain, depth and variance (of the noise), or 'all'
-    /// or 'none'
-    #[arg(long, value_name = "LIST", value_parser = Known::parse, default_value = "depth")]
-    pub known: Known,
+    /// What does not disturb the sweep: a list of smooth, gel, support, stage, surface, tilt, friction, relaxation and walk. With
+    /// --model exact what is not fitted: a list of offset, drift, gain, depth and variance (of the noise) [default: depth]. 'all' or
+    /// 'none' of them
+    #[arg(long, value_name = "LIST")]
+    known: Option<String>,
     /// Correlation of the noise: auto (estimated from the record), white (independent samples), or a file with a sweep without
     /// contact, from which correlation and standard deviation are estimated
     #[arg(long, value_name = "auto|white|FILE", default_value = "auto")]
@@ -125,9 +157,9 @@ pub(super) struct CriterionArguments {
     /// Prior probability of an inclusion
     #[arg(long, value_name = "P", value_parser = probability, allow_hyphen_values = true, default_value = "0.5")]
     pub prior_h1: f64,
-    /// Decision criterion
-    #[arg(long, value_enum, default_value_t = CriterionName::Map)]
-    criterion: CriterionName,
+    /// Decision criterion [default: map]; with --model exact
+    #[arg(long, value_enum)]
+    pub criterion: Option<CriterionName>,
     /// Miss rate for neyman-pearson-miss
     #[arg(long, value_name = "B", value_parser = probability, allow_hyphen_values = true)]
     pub max_miss: Option<f64>,
@@ -138,7 +170,7 @@ pub(super) struct CriterionArguments {
 
 /// The criteria by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum CriterionName {
+pub(super) enum CriterionName {
     /// The more probable hypothesis (maximum a posteriori).
     Map,
     /// A given miss rate.
@@ -159,20 +191,31 @@ impl Known {
     ///
     /// Implements: CLI-140.
     pub fn parse(text: &str) -> Result<Known, String> {
-        let names = Unknown::ALL.map(|of| of.to_string());
-        let listed: Vec<String> = match text {
-            "none" => Vec::new(),
-            "all" => names.clone().into(),
-            list => list.split(',').map(|name| name.trim().into()).collect(),
-        };
-        if let Some(name) = listed.iter().find(|name| !names.contains(name)) {
-            let names = names.join(", ");
-            return Err(format!("{name:?} is none of {names}, all and none"));
-        }
-        let is_listed = |of: &Unknown| listed.contains(&of.to_string());
-        let (known, unknown) = Unknown::ALL.into_iter().partition(is_listed);
+        let known = listed(text, Unknown::ALL)?;
+        let is_known = |of: &Unknown| known.contains(of);
+        let (known, unknown) = Unknown::ALL.into_iter().partition(is_known);
         Ok(Known { known, unknown })
     }
+}
+
+/// Those of `all` that a list names, or `all` or `none`.
+fn listed<T: Copy + Display>(
+    text: &str,
+    all: impl IntoIterator<Item = T>,
+) -> Result<Vec<T>, String> {
+    let all: Vec<T> = all.into_iter().collect();
+    let names: Vec<String> = all.iter().map(T::to_string).collect();
+    let listed: Vec<String> = match text {
+        "none" => Vec::new(),
+        "all" => names.clone(),
+        list => list.split(',').map(|name| name.trim().into()).collect(),
+    };
+    if let Some(name) = listed.iter().find(|name| !names.contains(name)) {
+        let names = names.join(", ");
+        return Err(format!("{name:?} is none of {names}, all and none"));
+    }
+    let is_listed = |of: &T| listed.contains(&of.to_string());
+    Ok(all.into_iter().filter(is_listed).collect())
 }
 
 impl NoiseSd {
@@ -185,9 +228,13 @@ impl NoiseSd {
 }
 
 impl CriterionArguments {
+    fn of_name(&self) -> CriterionName {
+        self.criterion.unwrap_or(CriterionName::Map)
+    }
+
     /// The name of the criterion.
     pub fn name(&self) -> String {
-        let name = self.criterion.to_possible_value();
+        let name = self.of_name().to_possible_value();
         name.map_or(String::new(), |name| name.get_name().into())
     }
 
@@ -196,7 +243,7 @@ impl CriterionArguments {
     /// Implements: CLI-042.
     pub fn criterion(&self) -> Result<Criterion, CliError> {
         use CriterionName::{Map, NeymanPearsonFalseAlarm, NeymanPearsonMiss};
-        let needs = match (self.criterion, self.max_miss, self.max_false_alarm) {
+        let needs = match (self.of_name(), self.max_miss, self.max_false_alarm) {
             (Map, None, None) => return Ok(Criterion::MaximumAPosteriori),
             (NeymanPearsonMiss, Some(max_miss), None) => {
                 return Ok(Criterion::NeymanPearsonMiss { max_miss });
@@ -213,6 +260,20 @@ impl CriterionArguments {
 }
 
 impl NoiseArguments {
+    /// What is known with the exact model.
+    pub fn known(&self) -> Result<Known, CliError> {
+        let known = Known::parse(self.known.as_deref().unwrap_or("depth"));
+        known.or_else(|error| refuse!("--known {error}"))
+    }
+
+    /// What does not disturb the sweep, with the robust model.
+    ///
+    /// Implements: ROB-050.
+    pub fn undisturbed(&self) -> Result<Vec<Part>, CliError> {
+        let known = listed(self.known.as_deref().unwrap_or("none"), Part::KNOWN);
+        known.or_else(|error| refuse!("--known {error}"))
+    }
+
     /// The noise as it was stated or is to be estimated.
     ///
     /// Implements: CLI-041.
@@ -228,9 +289,6 @@ impl NoiseArguments {
                 Noise { sd, ..blank }
             }
         };
-        if noise.sd.is_none() && !self.known.unknown.contains(&Unknown::Variance) {
-            refuse!("--known variance needs --noise-sd-n, or --noise FILE to estimate it from");
-        }
         Ok(noise)
     }
 }

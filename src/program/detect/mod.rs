@@ -1,6 +1,7 @@
 //! `palpate detect`: a recorded sweep against two force maps or a bank (`spec/command-line.md`).
 
 pub mod arguments;
+mod robust;
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -11,6 +12,7 @@ use super::CliError;
 use super::error::refuse;
 use super::output::{Envelope, note, write};
 pub use arguments::DetectArguments;
+use arguments::{Known, ModelName};
 use palpate::bank::{Bank, BankSearch};
 use palpate::chart::place_figure;
 use palpate::detect::Decision;
@@ -19,17 +21,33 @@ use palpate::refusal::one_line;
 use palpate::rows::Rows;
 use palpate::trace::{Cause, Fit, Motion, Question, Record, Trace, Unknown, in_words};
 
+/// The largest error of the depth that is assumed, m.
+const DEPTH_TOLERANCE: f64 = 0.3e-3;
+
 /// Runs the command.
 ///
 /// Implements: CLI-040, CLI-043, CLI-003, CLI-048, CLI-055, CLI-017, CLI-140, CLI-143, CLI-146.
 pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
+    robust::check_options(arguments)?;
     let sweep = &arguments.sweep;
     let motion = sweep.velocity.zip(sweep.start);
-    let trace = Trace::read(&arguments.trace)?;
-    for text in trace.notes() {
-        note(arguments.trace.display(), text);
+    let read = |path: &PathBuf| -> Result<Record, CliError> {
+        let trace = Trace::read(path)?;
+        for text in trace.notes() {
+            note(path.display(), text);
+        }
+        Ok(trace.record(motion.map(|(velocity, start)| Motion { velocity, start }))?)
+    };
+    let mut records = arguments
+        .traces
+        .iter()
+        .map(read)
+        .collect::<Result<Vec<_>, _>>()?;
+    if arguments.model.model == ModelName::Robust {
+        return robust::detect(arguments, records);
     }
-    let record = trace.record(motion.map(|(velocity, start)| Motion { velocity, start }))?;
+    // There is one, as has been checked.
+    let record = records.remove(0);
     match &arguments.hypotheses.bank {
         Some(path) => by_bank(arguments, record, path),
         None => by_maps(arguments, record),
@@ -43,18 +61,27 @@ fn by_maps(arguments: &DetectArguments, record: Record) -> Result<(), CliError> 
     let [reference_path, path] =
         [&files.reference, &files.inclusion].map(|path| path.as_ref().unwrap_or(&none));
     let (reference, inclusion) = (map(reference_path)?, map(path)?);
-    let depth = arguments.sweep.depth.unwrap_or(0.0);
+    let depth = depth(arguments)?.unwrap_or(0.0);
     let record = trimmed(arguments, record, reference.table())?;
     let mut warnings = Warnings::default();
     let table = reference.table();
-    let question = question(arguments, depth, table, reference_path, &mut warnings)?;
+    let known = arguments.noise.known()?;
+    let question = question(
+        arguments,
+        &known,
+        depth,
+        table,
+        reference_path,
+        &mut warnings,
+    )?;
     let any_maps = files.any_maps;
     let hypotheses = hypotheses(any_maps, path, &reference, &inclusion, &mut warnings)?;
     let found = question.judge(hypotheses, &record)?;
-    let mut rows = asked(arguments, depth, &record);
+    let mut rows = asked(arguments, &[depth], &[record]);
+    exactly_asked(arguments, &known, &mut rows);
     rows.append(found.rows());
     let verdict = (found.decision, &found.causes[..], &found.fit);
-    tell(arguments, verdict, rows, warnings)
+    tell(arguments, &known, verdict, rows, warnings)
 }
 
 /// Searches the record for any inclusion of a bank.
@@ -63,13 +90,14 @@ fn by_maps(arguments: &DetectArguments, record: Record) -> Result<(), CliError> 
 fn by_bank(arguments: &DetectArguments, record: Record, path: &Path) -> Result<(), CliError> {
     let bank = Bank::read(path)?;
     let (files, table) = (&arguments.hypotheses, bank.reference().table());
-    let depth = arguments.sweep.depth.unwrap_or(bank.depth());
+    let depth = depth(arguments)?.unwrap_or(bank.depth());
     let record = trimmed(arguments, record, table)?;
     let prior = files.prior.as_ref();
     let prior = prior.map(|file| bank.read_prior(file)).transpose()?;
     let mut warnings = Warnings::default();
+    let known = arguments.noise.known()?;
     let search = BankSearch {
-        question: question(arguments, depth, table, path, &mut warnings)?,
+        question: question(arguments, &known, depth, table, path, &mut warnings)?,
         bank: &bank,
         prior: prior.as_deref(),
         simulations: files.simulations.map(|number| (number, files.seed)),
@@ -78,10 +106,11 @@ fn by_bank(arguments: &DetectArguments, record: Record, path: &Path) -> Result<(
     if let Some(path) = &files.figure {
         write(path, &place_figure(&bank, &found.place)?)?;
     }
-    let mut rows = asked(arguments, depth, &record);
+    let mut rows = asked(arguments, &[depth], &[record]);
+    exactly_asked(arguments, &known, &mut rows);
     rows.append(found.rows(&bank)?);
     let verdict = (found.decision, &found.causes[..], &found.fit);
-    tell(arguments, verdict, rows, warnings)
+    tell(arguments, &known, verdict, rows, warnings)
 }
 
 /// The record without the samples outside `map`, if --trim is given.
@@ -100,14 +129,19 @@ fn trimmed(
 
 /// The question to ask of a sweep at `depth` over the gel of `reference`, the map in `file`.
 fn question<'a>(
-    arguments: &'a DetectArguments,
+    arguments: &DetectArguments,
+    known: &'a Known,
     depth: f64,
     reference: &ForceTable,
     file: &Path,
     warnings: &mut Warnings,
 ) -> Result<Question<'a>, CliError> {
-    let unknown = &arguments.noise.known.unknown;
-    let depth_tolerance = arguments.sweep.depth_tolerance;
+    let unknown = &known.unknown;
+    let depth_tolerance = depth_tolerance(arguments);
+    let noise = arguments.noise.noise()?;
+    if noise.sd.is_none() && !unknown.contains(&Unknown::Variance) {
+        refuse!("--known variance needs --noise-sd-n, or --noise FILE to estimate it from");
+    }
     let has_one_depth = reference.depths().len() == 1;
     if depth_tolerance > 0.0 && has_one_depth && !unknown.contains(&Unknown::Depth) {
         let text = "the map has a single depth: the depth tolerance has no effect";
@@ -117,17 +151,47 @@ fn question<'a>(
         depth,
         depth_tolerance,
         unknown,
-        noise: arguments.noise.noise()?,
+        noise,
         criterion: arguments.criterion.criterion()?,
         prior_h1: arguments.criterion.prior_h1,
     })
 }
 
-/// What was asked.
-fn asked(arguments: &DetectArguments, depth: f64, record: &Record) -> Rows {
+/// The largest error of the depth, m, with the exact model.
+fn depth_tolerance(arguments: &DetectArguments) -> f64 {
+    arguments.sweep.depth_tolerance.unwrap_or(DEPTH_TOLERANCE)
+}
+
+/// The one depth of the exact model, m, if it was given.
+fn depth(arguments: &DetectArguments) -> Result<Option<f64>, CliError> {
+    match arguments.sweep.depths[..] {
+        [] => Ok(None),
+        [depth] => Ok(Some(depth)),
+        ref depths => refuse!("--depth-mm has {} depths; give one", depths.len()),
+    }
+}
+
+/// What was asked of any model.
+fn asked(arguments: &DetectArguments, depths: &[f64], records: &[Record]) -> Rows {
     let mut rows = Rows::default();
     let path = |path: &Path| path.display().to_string();
-    rows.value("trace", path(&arguments.trace));
+    match (&arguments.traces[..], depths, records) {
+        ([trace], [depth], [record]) => {
+            rows.value("trace", path(trace));
+            rows.value("samples", record.positions().len());
+            rows.value("depth_m", *depth);
+        }
+        (traces, ..) => {
+            let traces: Vec<_> = traces.iter().map(|of| path(of)).collect();
+            let samples: Vec<_> = records
+                .iter()
+                .map(|record| record.positions().len())
+                .collect();
+            rows.value("traces", json!(traces));
+            rows.value("samples", json!(samples));
+            rows.value("depths_m", json!(depths));
+        }
+    }
     let files = &arguments.hypotheses;
     for (key, file) in [
         ("reference", &files.reference),
@@ -137,13 +201,17 @@ fn asked(arguments: &DetectArguments, depth: f64, record: &Record) -> Rows {
     ] {
         file.iter().for_each(|file| rows.value(key, path(file)));
     }
-    rows.value("samples", record.positions().len());
-    rows.value("depth_m", depth);
-    rows.value("depth_tolerance_m", arguments.sweep.depth_tolerance);
-    rows.value("unknown", json!(arguments.noise.known.unknown));
     rows.value("noise", &*arguments.noise.noise);
+    rows.value("prior_h1", arguments.criterion.prior_h1);
+    rows
+}
+
+/// What was asked of the exact model.
+fn exactly_asked(arguments: &DetectArguments, known: &Known, rows: &mut Rows) {
+    rows.value("model", "exact");
+    rows.value("depth_tolerance_m", depth_tolerance(arguments));
+    rows.value("unknown", json!(known.unknown));
     let criterion = &arguments.criterion;
-    rows.value("prior_h1", criterion.prior_h1);
     rows.value("criterion", criterion.name());
     for (key, rate) in [
         ("max_miss", criterion.max_miss),
@@ -151,7 +219,6 @@ fn asked(arguments: &DetectArguments, depth: f64, record: &Record) -> Rows {
     ] {
         rate.into_iter().for_each(|rate| rows.value(key, rate));
     }
-    rows
 }
 
 /// The decision; why there is none, the likeliest cause first; how well the record fits.
@@ -162,16 +229,17 @@ type Verdict<'a> = (Option<Decision>, &'a [Cause], &'a Fit);
 /// Implements: CLI-045, CLI-043, CLI-003.
 fn tell(
     arguments: &DetectArguments,
+    known: &Known,
     verdict: Verdict,
     mut rows: Rows,
     warnings: Warnings,
 ) -> Result<(), CliError> {
     rows.value("warnings", warnings.0);
-    let table = format!("{}\n{}\n", rows.table(), conclusion(arguments, verdict));
-    let answer = Envelope::new("palpate-detection", 3, rows);
+    let table = format!("{}\n{}\n", rows.table(), conclusion(known, verdict));
+    let answer = Envelope::new("palpate-detection", 4, rows);
     arguments.format.print(&answer, || table)?;
     if let (None, causes, _) = verdict {
-        let (file, why) = (arguments.trace.display(), reasons(causes));
+        let (file, why) = (arguments.traces[0].display(), reasons(causes));
         let message = format!("{file}: cannot be judged: {why}");
         return Err(CliError::Unjudged(message));
     }
@@ -181,7 +249,7 @@ fn tell(
 /// What was decided, whether the record fits, and what was assumed.
 ///
 /// Implements: CLI-043.
-fn conclusion(arguments: &DetectArguments, (decision, causes, fit): Verdict) -> String {
+fn conclusion(known: &Known, (decision, causes, fit): Verdict) -> String {
     let noise = match fit.limits {
         None => "with the noise estimated from the record",
         Some(_) => "and the record fits the stated noise",
@@ -191,7 +259,6 @@ fn conclusion(arguments: &DetectArguments, (decision, causes, fit): Verdict) -> 
         Some(Decision::NoInclusion) => format!("No inclusion detected, {noise}"),
         None => format!("The record cannot be judged: {}", reasons(causes)),
     };
-    let known = &arguments.noise.known;
     let [known, fitted] = [&known.known, &known.unknown].map(|names| in_words(names));
     format!("{decided}. Known: {known}. Fitted: {fitted}.")
 }

@@ -144,7 +144,7 @@ pub(super) fn decisions(program: &Path) -> Measured {
     let record = record();
     folder.write_record("record.csv", &record)?;
     let arguments = format!(
-        "detect record.csv {MAPS} {KNOWN} --noise-sd-n {NOISE} --depth-tolerance-mm {TOLERANCE}"
+        "detect record.csv --model exact {MAPS} {KNOWN} --noise-sd-n {NOISE} --depth-tolerance-mm {TOLERANCE}"
     );
     let output = folder.run(program, &arguments)?;
     let answer: Value = serde_json::from_slice(&output.stdout).map_err(|error| {
@@ -246,7 +246,7 @@ pub(super) fn refusals(program: &Path) -> Measured {
         let arguments = arguments.replace("MAPS", MAPS);
         judge(
             case,
-            &format!("detect record.csv {KNOWN} {arguments}"),
+            &format!("detect record.csv --model exact {KNOWN} {arguments}"),
             words,
         )?;
     }

@@ -37,25 +37,24 @@ fn what_is_no_bank_is_refused() {
         let error = Bank::new(reference(), maps).unwrap_err().to_string();
         assert!(error.starts_with(expected), "{error}");
     };
-    let none = "a bank without maps, but must be one at least";
+    let none = "the bank has no maps; give one at least";
     refused(&|maps| maps.clear(), none);
-    let grid = "39 maps, but must be one for each of 5 positions × 4 depths × 2 diameters × 1 moduli of their inclusions";
+    let grid = "39 maps; give one for each of 5 positions × 4 depths × 2 diameters × 1 moduli of their inclusions";
     refused(&|maps| maps.truncate(39), grid);
-    let same = "maps[2] and maps[7] have the same inclusion, but must be each inclusion once";
+    let same = "maps[2] and maps[7] have the same inclusion; give each inclusion once";
     refused(&|maps| maps[7] = maps[2].clone(), same);
     let plain = "maps[3]: the map has no inclusion to compare";
     refused(&|maps| maps[3] = map(None, &[4e-3]), plain);
     let of_depths = |depths| map(Some((1.0, 6.0, 8.0)), depths);
     let other = "maps[3]: depths_m[0] = 0.0039, but must be 0.004 as in maps[0]";
     refused(&|maps| maps[3] = of_depths(&[3.9e-3]), other);
-    let two = "maps[3]: 2 depths of the probe, but must be one";
+    let two = "maps[3]: it has 2 depths of the probe; give one";
     refused(&|maps| maps[3] = of_depths(&[3.9e-3, 4e-3]), two);
     let cut = |map: &ForceMap| map.at_laterals(&[0.0, 5e-4]).unwrap();
-    let narrow =
-        "maps[1]: its lateral positions are not those of the reference, but must be the same";
+    let narrow = "maps[1]: its lateral positions are not those of the reference; give the same";
     refused(&|maps| maps[1] = cut(&maps[1]), narrow);
     let error = Bank::new(map(None, &[3e-3]), maps()).unwrap_err();
-    let shallow = "depth 0.004 m is not in the map, but must be one of [0.003] m";
+    let shallow = "depth 0.004 m is not in the map; give one of [0.003] m";
     assert!(error.to_string().starts_with(shallow), "{error}");
 }
 

@@ -115,7 +115,7 @@ fn what_cannot_be_judged_is_told() {
     for (depth, found) in [(3.9e-3, "0.0039"), (3e-3, "0.003")] {
         asked.question.depth = depth;
         let error = asked.locate(&without).unwrap_err().to_string();
-        let expected = "expected 0.004 m, for which the bank is";
+        let expected = "but must be 0.004 m, for which the bank is";
         assert_eq!(
             error,
             format!("t.csv: depth of the sweep = {found} m, {expected}")

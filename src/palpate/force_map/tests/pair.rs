@@ -34,7 +34,7 @@ fn bands_belong_to_the_poses_and_are_finite() {
     }
     assert_error(
         with(&|bands| bands.normal_force_band = matrix(&[[0.0, 1e-4, 2e-4]])),
-        "certificate.discretization.normal_force_band_n has 1 rows and 3 columns, [..]",
+        "certificate.discretization.normal_force_band_n has 1 rows and 3 columns; [..]",
     );
 }
 

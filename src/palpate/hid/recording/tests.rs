@@ -129,5 +129,5 @@ fn what_is_no_recording_is_refused_with_its_line() {
         let refused = Recording::parse(&lines.join("\n")).unwrap_err();
         refused.to_string()
     });
-    assert_error(Recording::parse(""), "line 1: \"\", expected[..]");
+    assert_error(Recording::parse(""), "line 1: \"\"; give a recording[..]");
 }

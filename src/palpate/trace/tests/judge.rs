@@ -424,7 +424,7 @@ fn a_blank_sweep_tells_its_noise() {
     };
     // τ is 10; its estimate has a standard deviation of √(2 · 51/4000) of it.
     assert!((length / 10.0 - 1.0).abs() < 0.5, "{length}");
-    let few = "99 samples, but must be at least 100";
+    let few = "99 samples; give at least 100";
     for (trace, expected) in [
         (blank(99, 1, 0.2), few),
         (blank(100, 100, 0.2), "noise_sd_lateral_n"),

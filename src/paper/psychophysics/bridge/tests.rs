@@ -292,7 +292,7 @@ fn what_does_not_fit_is_refused_or_noted() {
     let table = AnswerTable::paper().unwrap();
     let (reference, [a, b, ..]) = maps(FALLING, FALLING);
     let other = map_over(&[4e-3], &[-1e-3, 0.0, 1e-3], |_| [1.0, 0.0]);
-    let unknown = "\"3\" is no column of the table, but must be one of 2.6, 4.6, 6.6, 8.6";
+    let unknown = "\"3\" is no column of the table; give one of 2.6, 4.6, 6.6, 8.6";
     for (named, words) in [
         (
             &[("2.6", &a)][..],

@@ -61,7 +61,7 @@ subject, => sbjct, => t.csv:1: header \"sbjct,condition,trials,2.6,8.6\"; give s
 30,21 => 30,-1 => t.csv:3: 8.6 = \"-1\", but must be a whole number from 0
 30,21 => 30,21.0 => t.csv:3: 8.6 = \"21.0\", but must be a whole number
 2,gel,30 => 2,gel,0 => t.csv:3: trials = \"0\", but must be a whole number from 1 to 1000
-2,gel,30 => 2,gel,1001 => t.csv:3: trials = \"1001\", expected
+2,gel,30 => 2,gel,1001 => t.csv:3: trials = \"1001\", but must be
 2,gel => 2, => t.csv:3: condition = \"\", but must be a name
 2,gel => \u{1b}[2m,gel => t.csv:3: subject = \"\\u{1b}[2m\", but must be a name of printable
 2,gel => 1,gel => t.csv:3: subject \"1\" again under condition \"gel\"; keep one row; the first is line 2
@@ -83,7 +83,7 @@ fn what_is_no_table_is_refused_with_line_column_and_value() {
         assert!(error.contains(message) && !error.contains('\n'), "{error}");
     }
     let empty = AnswerTable::from_csv("subject,condition,trials,2.6\n", "t").unwrap_err();
-    let words = "t:1: no rows under the header, but must be at least one";
+    let words = "t:1: no rows under the header; give at least one";
     assert_eq!(empty.to_string(), words);
     assert!(AnswerTable::from_csv("", "t").is_err());
 }

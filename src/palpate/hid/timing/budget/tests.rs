@@ -88,7 +88,7 @@ fn percents_are_between_0_and_100() {
     for wrong in [0.0, 100.0, -1.0, f64::NAN] {
         assert!(Budget::new(MS, wrong, 95.0).is_err(), "{wrong}");
         let refusal = Budget::new(MS, 99.9, wrong).unwrap_err().to_string();
-        let holds = refusal.ends_with("expected above 0 and below 100");
+        let holds = refusal.ends_with("but must be above 0 and below 100");
         assert!(holds, "{refusal}");
     }
 }

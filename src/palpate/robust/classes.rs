@@ -1,0 +1,434 @@
+//! What the world may do to the model: parts of disturbances, and the classes of which one explains a record.
+
+use std::f64::consts::PI;
+use std::fmt;
+
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+use super::modes::Modes;
+use crate::force::Force;
+use crate::trace::design::channels;
+
+/// A part of a disturbance.
+///
+/// Implements: ROB-021.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Part {
+    /// A smooth misfit of the maps in both channels, four times smaller in the variance of the lateral one.
+    Smooth,
+    /// A smooth misfit over longer distances.
+    Broad,
+    /// The gel and the probe: compressibility, size of the well, skin, radius, depth.
+    Gel,
+    /// Walls or floor that hold the gel less.
+    Support,
+    /// The depth varies along the stage.
+    Stage,
+    /// The height of the surface varies.
+    Surface,
+    /// Stage and surface are tilted.
+    Tilt,
+    /// Friction along the surface, and cross-talk between the channels.
+    Friction,
+    /// Friction that varies along the surface.
+    UnevenFriction,
+    /// The forces relax from the beginning of the sweep on.
+    Relaxation,
+    /// A random walk of the sensor.
+    Walk,
+}
+
+/// One kind of world: parts, and how large they are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Class {
+    /// What a person calls it.
+    pub name: &'static str,
+    /// Its prior, over that of the others.
+    pub weight: f64,
+    /// The parts with their sizes; what is known is left out.
+    parts: &'static [(Part, f64)],
+}
+
+const fn class(name: &'static str, weight: f64, parts: &'static [(Part, f64)]) -> Class {
+    Class {
+        name,
+        weight,
+        parts,
+    }
+}
+
+/// A smooth misfit up to this size is always possible.
+const SMALL: f64 = 0.005;
+/// What is left where nothing disturbs.
+const EXACT: (Part, f64) = (Part::Smooth, 0.002);
+
+/// The classes with their prior weights. A size of a smooth part or a walk is a share of the mean normal force.
+///
+/// Implements: ROB-022.
+#[rustfmt::skip]
+pub const CLASSES: [Class; 19] = {
+    use Part::{Broad, Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Tilt, UnevenFriction, Walk};
+    [
+        class("the maps hold", 2.0, &[EXACT]),
+        class("the forces are off smoothly by 0.5 %", 1.0, &[(Smooth, 0.005)]),
+        class("the forces are off smoothly by 1.5 %", 1.0, &[(Smooth, 0.015)]),
+        class("the forces are off smoothly by 4 %", 1.0, &[(Smooth, 0.04)]),
+        class("the forces are off smoothly by 10 %", 1.0, &[(Broad, 0.1)]),
+        class("the gel is another", 1.0, &[(Gel, 1.0), EXACT]),
+        class("the gel is another, and off smoothly", 1.0, &[(Gel, 1.0), (Smooth, 0.015)]),
+        class("walls or floor are loose", 0.5, &[(Support, 1.0), (Gel, 1.0), (Smooth, 0.005)]),
+        class("the stage is bowed", 0.5, &[(Stage, 1.0), EXACT]),
+        class("the surface is domed or dished", 0.5, &[(Surface, 1.0), EXACT]),
+        class("the gel is tilted", 0.5, &[(Tilt, 1.0), EXACT]),
+        class("the probe rubs", 0.5, &[(Friction, 1.0), EXACT]),
+        class("the probe rubs unevenly", 0.5, &[(Friction, 1.0), (UnevenFriction, 0.1), (Smooth, 0.005)]),
+        class("the gel relaxes", 0.5, &[(Relaxation, 1.0), EXACT]),
+        class("the probe rubs and the gel relaxes", 0.5, &[(Friction, 1.0), (Relaxation, 1.0), (Smooth, 0.04)]),
+        class("the sensor wanders a little", 0.5, &[(Walk, 0.05)]),
+        class("the sensor wanders", 0.5, &[(Walk, 0.15)]),
+        class("the sensor wanders far", 0.5, &[(Walk, 0.5)]),
+        class("several of these at once", 0.5,
+            &[(Gel, 0.5), (Stage, 0.5), (Surface, 0.5), (Friction, 0.5), (Relaxation, 0.5), (Smooth, 0.005)]),
+    ]
+};
+
+/// One more where there is a single signal: it has no rival that a loose floor resembles even more.
+pub const SUPPORT_ALONE: Class = class(
+    "walls or floor alone are loose",
+    4.0,
+    &[(Part::Support, 2.0), (Part::Smooth, 0.005)],
+);
+
+/// Standard deviations of what is part of every class: offset, and drift to either end, N, and gain.
+const OFFSET: f64 = 0.3;
+const DRIFT: f64 = 0.15;
+const GAIN: f64 = 0.3;
+/// The standard deviation of what rounding leaves, as a share of the mean normal force.
+const ROUNDING: f64 = 1e-5;
+/// The offset of a sensor that was set to zero on the gel, N.
+const TARED: f64 = 2.0;
+/// Lengths of smooth parts, over the radius of the probe.
+const SMOOTH: [f64; 2] = [0.38, 0.77];
+const BROAD: [f64; 2] = [0.62, 1.23];
+const RUBBED: [f64; 3] = [0.15, 0.38, 0.77];
+/// The standard deviation of friction's short changes, over the mean normal force.
+const RUBS: f64 = 0.02;
+/// The variance of the lateral channel over that of the normal one.
+const LATERAL: f64 = 0.25;
+/// Standard deviations of the curves of stage and surface, over the radius of the probe: 0.2 mm and less.
+const CURVES: [f64; 7] = [0.031, 0.031, 0.015, 0.015, 0.0077, 0.0046, 0.0046];
+/// The standard deviation of the depth, as a share.
+const DEPTH: f64 = 0.05;
+/// Lengths after which friction from rest, and relaxation, have come to an end, over the radius of the probe.
+const FROM_REST: [f64; 3] = [0.062, 0.15, 0.46];
+const RELAXING: [f64; 3] = [0.23, 0.77, 2.5];
+
+/// What a sweep is like where nothing disturbs it, from which the disturbances are made: samples stacked, lateral first.
+#[derive(Debug, Clone)]
+pub struct Undisturbed {
+    /// The forces without inclusion, N.
+    pub forces: Vec<f64>,
+    /// ∂F/∂d, N/m.
+    pub slope: Vec<f64>,
+    /// What one standard deviation of each uncertain quantity of the gel, and of its support, adds, N.
+    pub gel: Vec<Vec<f64>>,
+    pub support: Vec<Vec<f64>>,
+    /// Positions in the order of time, as distances from the beginning, m.
+    pub travelled: Vec<f64>,
+    /// Depth, and radius of the probe, m.
+    pub depth: f64,
+    pub radius: f64,
+    /// Whether the sensor was set to zero on the gel.
+    pub is_tared: bool,
+}
+
+/// A covariance between the modes of a sweep: Σ of vvᵀ over directions of known size, and a rest.
+#[derive(Debug, Clone, Default)]
+pub struct Covariance {
+    /// The directions; those of the same number in several sweeps are one, where the part is shared.
+    pub vectors: Vec<DVector<f64>>,
+    /// The rest, if any.
+    pub rest: Option<DMatrix<f64>>,
+}
+
+/// The disturbances of a sweep in its modes.
+#[derive(Debug, Clone, Copy)]
+pub struct Disturbances<'a> {
+    modes: &'a Modes,
+    sweep: &'a Undisturbed,
+    /// The mean normal force, N.
+    level: f64,
+}
+
+/// Its name on the command line and in JSON.
+impl fmt::Display for Part {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
+    }
+}
+
+impl Part {
+    /// All parts.
+    pub const ALL: [Part; 11] = {
+        use Part::{
+            Broad, Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Tilt,
+            UnevenFriction, Walk,
+        };
+        [
+            Smooth,
+            Broad,
+            Gel,
+            Support,
+            Stage,
+            Surface,
+            Tilt,
+            Friction,
+            UnevenFriction,
+            Relaxation,
+            Walk,
+        ]
+    };
+
+    /// Those that can be known; their variants are known with them.
+    ///
+    /// Implements: ROB-050.
+    pub const KNOWN: [Part; 9] = {
+        use Part::{Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Tilt, Walk};
+        [
+            Smooth, Gel, Support, Stage, Surface, Tilt, Friction, Relaxation, Walk,
+        ]
+    };
+
+    /// The part that a person calls known, for a variant of it.
+    fn name(self) -> Part {
+        match self {
+            Part::Broad => Part::Smooth,
+            Part::UnevenFriction => Part::Friction,
+            part => part,
+        }
+    }
+
+    /// Whether it is the same in all sweeps of one place, or each has its own.
+    ///
+    /// Implements: ROB-030.
+    pub fn is_shared(self) -> bool {
+        use Part::{Gel, Stage, Support, Surface, Tilt};
+        matches!(self, Gel | Support | Stage | Surface | Tilt)
+    }
+}
+
+impl Class {
+    /// Its parts that are not `known`, with their sizes; none where what is left is another class.
+    ///
+    /// Implements: ROB-050.
+    pub fn parts(&self, known: &[Part]) -> Option<Vec<(Part, f64)>> {
+        let is_smooth = |(part, _): &(Part, f64)| *part == Part::Smooth;
+        let is_left = |(part, size): &(Part, f64)| {
+            !known.contains(&part.name()) || *size <= SMALL && *part == Part::Smooth
+        };
+        let left: Vec<_> = self.parts.iter().copied().filter(is_left).collect();
+        let has_own = |parts: &[(Part, f64)]| parts.iter().any(|part| !is_smooth(part));
+        let is_other = left.is_empty() || has_own(self.parts) && !has_own(&left);
+        (!is_other).then_some(left)
+    }
+}
+
+impl<'a> Disturbances<'a> {
+    /// Those of a sweep.
+    pub fn new(modes: &'a Modes, sweep: &'a Undisturbed) -> Disturbances<'a> {
+        let normal = channels(&sweep.forces).normal;
+        let level = normal.iter().map(|force| force.abs()).sum::<f64>() / normal.len() as f64;
+        Disturbances {
+            modes,
+            sweep,
+            level,
+        }
+    }
+
+    /// Σ of what may be in every class: offset, drift and gain.
+    pub fn always(&self) -> Covariance {
+        let offset = if self.sweep.is_tared { TARED } else { OFFSET };
+        let both = |size: f64, of: &dyn Fn(usize) -> f64| {
+            let scaled = |at: usize| size * of(at);
+            [self.channel(true, &scaled), self.channel(false, &scaled)]
+        };
+        let mut vectors = Vec::from(both(offset, &|_| 1.0));
+        vectors.extend(both(DRIFT, &|at| self.modes.u[at]));
+        vectors.push(self.stacked(&self.sweep.forces, |_| GAIN));
+        // So that a record without noise has a density too.
+        let rest = self.modes.covariance(|i, j| f64::from(i == j));
+        let rest = self.rest(&rest, ROUNDING * ROUNDING, ROUNDING * ROUNDING);
+        Covariance { vectors, ..rest }
+    }
+
+    /// A part of size 1.
+    pub fn part(&self, part: Part) -> Covariance {
+        let sweep = self.sweep;
+        let radius = sweep.radius;
+        let normal = channels(&sweep.forces).normal;
+        let faded = |at: usize, length: f64| libm::exp(-sweep.travelled[at] / (length * radius));
+        let of = |vectors: Vec<DVector<f64>>| Covariance {
+            vectors,
+            rest: None,
+        };
+        let all = |series: &[Vec<f64>]| {
+            series
+                .iter()
+                .map(|series| self.stacked(series, |_| 1.0))
+                .collect()
+        };
+        match part {
+            Part::Smooth => self.rest(&self.smooth(&SMOOTH), LATERAL, 1.0),
+            Part::Broad => self.rest(&self.smooth(&BROAD), LATERAL, 1.0),
+            Part::Walk => {
+                let samples = self.modes.samples();
+                let way = |at: usize| sweep.travelled[at];
+                let whole = f64::max(way(0), way(samples - 1));
+                let walk = self
+                    .modes
+                    .covariance(|i, j| f64::min(way(i), way(j)) / whole);
+                self.rest(&walk, 1.0, 1.0)
+            }
+            Part::Gel => {
+                let mut vectors: Vec<_> = all(&sweep.gel);
+                vectors.push(self.stacked(&sweep.slope, |_| DEPTH * sweep.depth));
+                of(vectors)
+            }
+            Part::Support => of(all(&sweep.support)),
+            Part::Stage => of((0..CURVES.len())
+                .map(|curve| self.curve(curve, false))
+                .collect()),
+            Part::Surface => of((0..CURVES.len())
+                .map(|curve| self.curve(curve, true))
+                .collect()),
+            Part::Tilt => of(vec![self.curve(0, false), self.curve(0, true)]),
+            Part::Friction => {
+                let mut vectors = vec![
+                    self.channel(true, &|at| 0.2 * normal[at]),
+                    self.channel(false, &|at| 0.05 * sweep.forces[at]),
+                ];
+                vectors.extend(
+                    FROM_REST.map(|length| {
+                        self.channel(true, &|at| 0.1 * normal[at] * faded(at, length))
+                    }),
+                );
+                let rubbed = self.rest(&self.smooth(&RUBBED), RUBS * RUBS, 0.0);
+                Covariance { vectors, ..rubbed }
+            }
+            Part::UnevenFriction => self.rest(&self.smooth(&SMOOTH), 1.0, 0.0),
+            Part::Relaxation => {
+                let relaxed = |length| self.stacked(&sweep.forces, |at| 0.1 * faded(at, length));
+                of(RELAXING.map(relaxed).into())
+            }
+        }
+    }
+
+    /// Curve `number` of the stage, or of the surface, whose slope turns the force.
+    fn curve(&self, number: usize, is_surface: bool) -> DVector<f64> {
+        let (sweep, samples) = (self.sweep, self.modes.samples());
+        let Force { lateral, normal } = channels(&sweep.forces);
+        let size = CURVES[number] * sweep.radius;
+        let half = 0.5 * (sweep.travelled[samples - 1] - sweep.travelled[0]).abs();
+        let value = |at: usize| {
+            let (sample, channel) = (at % samples, at / samples);
+            let u = self.modes.u[sample];
+            let slope = if is_surface {
+                slope(number, u) / half
+            } else {
+                0.0
+            };
+            let turned = slope * [-normal[sample], lateral[sample]][channel];
+            size * (sweep.slope[at] * curve(number, u) + turned)
+        };
+        let curved: Vec<f64> = (0..2 * samples).map(value).collect();
+        self.modes.of(channels(&curved))
+    }
+
+    /// The mean of Gaussian kernels of these lengths, over the radius of the probe.
+    fn smooth(&self, lengths: &[f64]) -> DMatrix<f64> {
+        let lengths: Vec<f64> = lengths
+            .iter()
+            .map(|length| length * self.sweep.radius)
+            .collect();
+        self.modes.covariance(|i, j| {
+            let apart = self.sweep.travelled[i] - self.sweep.travelled[j];
+            let kernel = |length: &f64| libm::exp(-0.5 * (apart / length) * (apart / length));
+            lengths.iter().map(kernel).sum::<f64>() / lengths.len() as f64
+        })
+    }
+
+    /// A covariance of both channels, over the square of the mean normal force.
+    fn rest(&self, of: &DMatrix<f64>, lateral: f64, normal: f64) -> Covariance {
+        let count = self.modes.count();
+        let mut rest = DMatrix::zeros(2 * count, 2 * count);
+        let square = self.level * self.level;
+        rest.view_mut((0, 0), (count, count))
+            .copy_from(&(of * (lateral * square)));
+        rest.view_mut((count, count), (count, count))
+            .copy_from(&(of * (normal * square)));
+        Covariance {
+            vectors: Vec::new(),
+            rest: Some(rest),
+        }
+    }
+
+    /// The shape that the signal may have beside that of the map, for a signal of 1 N.
+    pub fn shape(&self) -> DMatrix<f64> {
+        let rest = self.rest(&self.smooth(&SMOOTH), LATERAL, 1.0).rest;
+        rest.unwrap_or_default() / (self.level * self.level)
+    }
+
+    /// A series in one channel alone.
+    fn channel(&self, is_lateral: bool, value: &dyn Fn(usize) -> f64) -> DVector<f64> {
+        let samples = self.modes.samples();
+        let series: Vec<f64> = (0..samples).map(value).collect();
+        let none = vec![0.0; samples];
+        let both = if is_lateral {
+            Force::new(&series, &none)
+        } else {
+            Force::new(&none, &series)
+        };
+        self.modes.of(both.map(|channel| &channel[..]))
+    }
+
+    /// A series in both channels, each sample times a factor.
+    fn stacked(&self, series: &[f64], factor: impl Fn(usize) -> f64) -> DVector<f64> {
+        let samples = self.modes.samples();
+        let scaled = series
+            .iter()
+            .enumerate()
+            .map(|(at, force)| force * factor(at % samples));
+        let scaled: Vec<f64> = scaled.collect();
+        self.modes.of(channels(&scaled))
+    }
+}
+
+/// A curve along the sweep, u from −1 to 1.
+///
+/// Implements: ROB-023.
+fn curve(number: usize, u: f64) -> f64 {
+    match number {
+        0 => u,
+        1 => u * u,
+        2 => u * u * u,
+        3 => libm::cos(PI * u),
+        4 => libm::sin(PI * u),
+        5 => libm::cos(2.0 * PI * u),
+        _ => libm::sin(2.0 * PI * u),
+    }
+}
+
+/// Its derivative by u.
+fn slope(number: usize, u: f64) -> f64 {
+    match number {
+        0 => 1.0,
+        1 => 2.0 * u,
+        2 => 3.0 * u * u,
+        3 => -PI * libm::sin(PI * u),
+        4 => PI * libm::cos(PI * u),
+        5 => -2.0 * PI * libm::sin(2.0 * PI * u),
+        _ => 2.0 * PI * libm::cos(2.0 * PI * u),
+    }
+}

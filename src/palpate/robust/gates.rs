@@ -1,0 +1,99 @@
+//! What is wrong with a record whatever the gel: a sensor at its end, glitches, another unit or sign, no contact.
+
+use super::modes::Modes;
+use crate::trace::Cause;
+
+/// A sample is a glitch if it is so many standard deviations from what the others say of it.
+const GLITCH: f64 = 6.0;
+/// So many glitches are replaced, or this share of the samples; more refuse the record.
+const MOST_GLITCHES: usize = 2;
+const MOST_GLITCHES_SHARE: f64 = 0.05;
+/// A record whose noise is to be estimated has at least so many samples, and one in stated noise so many.
+pub const LEAST_SAMPLES: usize = 20;
+pub const LEAST_SAMPLES_IN_NOISE: usize = 8;
+/// The level of a record of the gel: of computed gels 0.57 to 1.34, at finite strain up to 1.83.
+const LEVEL: [f64; 2] = [0.5, 2.2];
+/// From here on another unit is likelier than anything else, and below its inverse too.
+const UNIT: f64 = 30.0;
+/// Below this the sign is another.
+const SIGN: f64 = -0.4;
+
+/// Whether one end of the range of `channel` occurs too often: the sensor was at its end.
+///
+/// Implements: ROB-001.
+pub fn is_saturated(channel: &[f64]) -> bool {
+    let mut sorted = channel.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let runs: Vec<usize> = sorted.chunk_by(|a, b| a == b).map(<[f64]>::len).collect();
+    let samples = sorted.len() as f64;
+    let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
+        return false;
+    };
+    let inner = runs
+        .iter()
+        .skip(1)
+        .rev()
+        .skip(1)
+        .copied()
+        .max()
+        .unwrap_or(0);
+    let at = |share: f64| sorted[(share * (samples - 1.0)) as usize];
+    // A coarse converter has many samples of each value.
+    let coarse = 4.0 * samples * step(channel) / (at(0.975) - at(0.025)).max(f64::MIN_POSITIVE);
+    let is_end = |count: usize, other: usize| {
+        let most = inner.max(other);
+        count as f64 >= f64::max(4.0, 0.02 * samples) && count > 3 * most && count as f64 > coarse
+    };
+    runs.len() > 1 && (is_end(*first, *last) || is_end(*last, *first))
+}
+
+/// The smallest difference of two values, N: the resolution of the sensor.
+pub fn step(channel: &[f64]) -> f64 {
+    let mut sorted = channel.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]);
+    let least = steps
+        .filter(|step| *step > 0.0)
+        .fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}
+
+/// Replaces glitches by what the modes say of the samples beside them; their number, or none if there are too many.
+///
+/// Implements: ROB-002.
+pub fn without_glitches(modes: &Modes, channel: &mut [f64], step: f64) -> Option<usize> {
+    let samples = channel.len();
+    let most = MOST_GLITCHES.max((MOST_GLITCHES_SHARE * samples as f64) as usize);
+    let free: Vec<f64> = (0..samples)
+        .map(|at| (1.0 - modes.leverage(at)).max(1e-3))
+        .collect();
+    for found in 0..=most {
+        let left = modes.residual(channel);
+        let degrees = (samples - modes.count() - found) as f64;
+        let squares: f64 = left.iter().map(|r| r * r).sum();
+        let score = |at: usize| {
+            let own = left[at] * left[at] / free[at];
+            let others = ((squares - own) / (degrees - 1.0)).max(step * step / 12.0);
+            own / others.max(f64::MIN_POSITIVE)
+        };
+        let worst = (0..samples).max_by(|&a, &b| score(a).total_cmp(&score(b)))?;
+        if score(worst) <= GLITCH * GLITCH {
+            return Some(found);
+        }
+        channel[worst] -= left[worst] / free[worst];
+    }
+    None
+}
+
+/// What the level of a record, Σ F f/Σ f² of its normal force, says is wrong.
+///
+/// Implements: ROB-003.
+pub fn wrong_level(level: f64) -> Option<Cause> {
+    match level {
+        level if level > UNIT => Some(Cause::ForceUnit),
+        level if level > LEVEL[1] => Some(Cause::Level),
+        level if level >= LEVEL[0] => None,
+        level if level < SIGN => Some(Cause::Sign),
+        _ => Some(Cause::NoContact),
+    }
+}

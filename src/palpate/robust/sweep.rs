@@ -1,0 +1,161 @@
+//! A sweep in its modes, and a record of it over its level.
+
+use nalgebra::DVector;
+
+use super::classes::Undisturbed;
+use super::gates;
+use super::gel::GelChange;
+use super::modes::{Modes, Spectrum};
+use super::{RobustQuestion, RobustSweep};
+use crate::force::Force;
+use crate::force_map::ForceTable;
+use crate::refusal::Refusal;
+use crate::trace::Cause;
+use crate::trace::design::{channels, depth_slope, expected};
+
+/// The radius of the probe where no phantom says it, m: the paper's.
+const RADIUS: f64 = 6.5e-3;
+/// A sweep over less than this share of the radius of the probe shows no inclusion.
+const NARROW: f64 = 0.46;
+
+/// A sweep in its modes.
+pub struct PreparedSweep {
+    pub modes: Modes,
+    pub undisturbed: Undisturbed,
+    forces: DVector<f64>,
+}
+
+/// A record without its glitches.
+pub struct Cleaned {
+    forces: Force<Vec<f64>>,
+    /// Σ F f/Σ f² of its normal force.
+    pub level: f64,
+    /// The noise of each channel.
+    pub noise: Force<Spectrum>,
+    /// Samples that were replaced.
+    pub glitches: usize,
+}
+
+/// The sweep, ready for its records.
+///
+/// # Errors
+/// Samples outside the map; too few samples.
+pub fn prepared(
+    question: &RobustQuestion<'_>,
+    without: &ForceTable,
+    sweep: &RobustSweep<'_>,
+) -> Result<PreparedSweep, Refusal> {
+    let (record, depth) = (sweep.record, sweep.depth);
+    let radius = sweep.changes.map_or(RADIUS, |changes| changes.radius);
+    let samples = record.positions().len();
+    let least = match question.noise_sd {
+        Some(_) => gates::LEAST_SAMPLES_IN_NOISE,
+        None => gates::LEAST_SAMPLES,
+    };
+    let few = Refusal::state(
+        format!("{samples} samples"),
+        format!("give at least {least}"),
+    );
+    few.in_file(record.file()).when(samples < least)?;
+    let forces = expected(record, without, depth)?;
+    let depths = without.depths();
+    let slope = depth_slope(depths, depth, |depth| expected(record, without, depth))?;
+    // A thick gel gives way as its depth, at least.
+    let slope = slope.unwrap_or_else(|| forces.iter().map(|force| force / depth).collect());
+    let at = |changes: &[GelChange]| {
+        changes
+            .iter()
+            .map(|change| change.at(record, depth))
+            .collect::<Result<Vec<_>, Refusal>>()
+    };
+    let (gel, support) = match sweep.changes {
+        Some(changes) => (at(&changes.gel)?, at(&changes.support)?),
+        None => (Vec::new(), Vec::new()),
+    };
+    let modes = Modes::new(record.positions(), radius, question.noise_sd.is_some());
+    let undisturbed = Undisturbed {
+        slope,
+        gel,
+        support,
+        travelled: record.travelled(),
+        depth,
+        radius,
+        is_tared: question.is_tared,
+        forces,
+    };
+    let forces = modes.of(channels(&undisturbed.forces));
+    Ok(PreparedSweep {
+        modes,
+        undisturbed,
+        forces,
+    })
+}
+
+impl PreparedSweep {
+    /// A record of the sweep without its glitches, its level and its noise; or why it cannot be judged.
+    ///
+    /// Implements: ROB-001, ROB-002, ROB-004, ROB-011.
+    pub fn cleaned(
+        &self,
+        question: &RobustQuestion<'_>,
+        forces: Force<&[f64]>,
+    ) -> Result<Cleaned, Cause> {
+        let modes = &self.modes;
+        if modes.width < NARROW * self.undisturbed.radius {
+            return Err(Cause::Narrow);
+        }
+        if forces.into_array().into_iter().any(gates::is_saturated) {
+            return Err(Cause::Saturated);
+        }
+        let steps = forces.map(gates::step);
+        let clean = |(channel, step): (&[f64], f64)| {
+            let mut channel = channel.to_vec();
+            let glitches =
+                gates::without_glitches(modes, &mut channel, step).ok_or(Cause::Glitches);
+            Ok((channel, glitches?))
+        };
+        let Force { lateral, normal } = forces.zip(steps).map(clean);
+        let (lateral, normal) = (lateral?, normal?);
+        let glitches = lateral.1 + normal.1;
+        let forces = Force::new(lateral.0, normal.0);
+        let expected = channels(&self.undisturbed.forces).normal;
+        let level = match question.is_tared {
+            true => 1.0,
+            false => level(&forces.normal, expected),
+        };
+        let white = |sd: f64| Spectrum::white(modes, sd * sd);
+        let noise = match question.noise_sd {
+            Some(sd) => sd.map(white),
+            None => (forces.as_ref().zip(steps)).map(|(channel, step)| modes.noise(channel, step)),
+        };
+        Ok(Cleaned {
+            forces,
+            level,
+            noise,
+            glitches,
+        })
+    }
+
+    /// The amplitudes of a record's modes over a level, beside those of the map, and the variances of their noise.
+    pub fn reduced(&self, of: &Cleaned, level: f64) -> [DVector<f64>; 2] {
+        let amplitudes = self.modes.of(of.forces.as_deref()) / level - &self.forces;
+        let noise = of.noise.as_ref().map(|noise| &noise.of_modes);
+        let noise = noise.into_array().into_iter().flatten().copied();
+        [
+            amplitudes,
+            DVector::from_iterator(2 * self.modes.count(), noise) / (level * level),
+        ]
+    }
+
+    /// Σ of the normal forces that the map expects, N.
+    pub fn weight(&self) -> f64 {
+        channels(&self.undisturbed.forces).normal.iter().sum()
+    }
+}
+
+/// Σ F f/Σ f².
+fn level(forces: &[f64], expected: &[f64]) -> f64 {
+    let cross: f64 = forces.iter().zip(expected).map(|(a, b)| a * b).sum();
+    let square: f64 = expected.iter().map(|b| b * b).sum();
+    cross / square.max(f64::MIN_POSITIVE)
+}

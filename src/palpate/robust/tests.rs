@@ -1,0 +1,425 @@
+//! The parts of the robust detector, each against another way to the same number.
+
+use std::f64::consts::PI;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::classes::{CLASSES, Covariance, Disturbances, Part, Undisturbed};
+use super::detector::joined;
+use super::evidence::{Signal, evidence};
+use super::gates::{is_saturated, step, without_glitches, wrong_level};
+use super::modes::Modes;
+use super::{BankHypotheses, GelChanges, RobustQuestion};
+use crate::bank::{Bank, BankPlan};
+use crate::detect::Decision;
+use crate::force::Force;
+use crate::phantom::Phantom;
+use crate::stats::random::Generator;
+use crate::trace::{Cause, Record};
+use palpate_asserts::assert_near;
+
+fn positions(samples: usize) -> Vec<f64> {
+    let step = 16e-3 / (samples - 1) as f64;
+    (0..samples).map(|k| step * k as f64 - 8e-3).collect()
+}
+
+fn modes(samples: usize) -> Modes {
+    Modes::new(&positions(samples), 6.5e-3, false)
+}
+
+fn noise(samples: usize, trial: u64) -> Vec<f64> {
+    let mut noise = vec![0.0; samples];
+    Generator::new(1, 0).normals(trial, 0, &mut noise);
+    noise
+}
+
+// SciPy's multivariate_normal.logpdf with dense covariances, plus 2 ln 2π.
+// Verifies: ROB-031, ROB-032.
+#[test]
+fn evidence_is_that_of_dense_normal_laws() {
+    let record = DVector::from_vec(vec![1.0, -0.5, 2.0, 0.25]);
+    let own = DVector::from_vec(vec![0.25, 0.5, 1.0, 2.0]);
+    #[rustfmt::skip]
+    let one = DMatrix::from_row_slice(4, 4, &[
+        2.0, 1.0, 0.0, 0.0,
+        1.0, 2.0, 0.5, 0.0,
+        0.0, 0.5, 1.0, 0.25,
+        0.0, 0.0, 0.25, 1.0,
+    ]);
+    let other = DMatrix::from_diagonal(&DVector::from_vec(vec![4.0, 1.0, 1.0, 0.5]));
+    let shape = DMatrix::from_diagonal(&DVector::from_vec(vec![0.25, 0.25, 1.0, 1.0]));
+    let signal = |mean: [f64; 4], size, prior: f64| Signal {
+        mean: DVector::from_column_slice(&mean),
+        size,
+        log_prior: prior.ln(),
+    };
+    let signals = [
+        signal([1.0, 0.0, 2.0, 0.5], 2.0, 0.75),
+        signal([0.0, -1.0, 1.0, 1.0], 0.5, 0.25),
+    ];
+    let found = evidence(&record, &own, &[(3.0, one), (1.0, other)], &signals, &shape).unwrap();
+    for (found, expected) in [
+        (found.without, [-3.6753127483705823, -4.330685755016049]),
+        (found.with, [-1.9559298058616992, -2.3567653216572255]),
+        (found.by_class, [-2.3080557626350013, -3.4965484838491694]),
+    ] {
+        for (found, expected) in found.into_iter().zip(expected) {
+            // Condition numbers are below 10; some tens of operations.
+            assert_near(found, expected, 1e-13);
+        }
+    }
+}
+
+// Verifies: ROB-010.
+#[test]
+fn modes_are_orthonormal_and_hold_whatever_is_smooth() {
+    let modes = modes(161);
+    assert_eq!(modes.count(), 16);
+    let identity = modes.covariance(|i, j| f64::from(i == j));
+    let off = (identity - DMatrix::<f64>::identity(16, 16)).amax();
+    assert!(off < 1e-14, "{off:e}");
+    // A bump with the standard deviation of a deep disc's signal, and a line, are left with less than two thousandths.
+    let bump = |x: &f64| (-0.5 * (x / 2.5e-3) * (x / 2.5e-3)).exp() + 100.0 * x;
+    let bump: Vec<f64> = positions(161).iter().map(bump).collect();
+    let left = modes
+        .residual(&bump)
+        .into_iter()
+        .fold(0.0, |most: f64, left| most.max(left.abs()));
+    assert!(left < 2e-3, "{left:e}");
+    // With stated noise, 17 samples give more modes: 75 % instead of 40 %.
+    let few = [false, true].map(|stated| Modes::new(&positions(17), 6.5e-3, stated).count());
+    assert_eq!(few, [6, 12]);
+}
+
+// Verifies: ROB-011.
+#[test]
+fn noise_is_estimated_beside_any_smooth_record() {
+    let modes = modes(161);
+    let (mut white, mut slow) = (0.0, 0.0);
+    for trial in 0..40 {
+        let smooth = |x: f64| 1.5 + 0.5 * (300.0 * x).sin();
+        let noise = noise(161, trial);
+        let record = |noise: &[f64]| -> Vec<f64> {
+            positions(161)
+                .iter()
+                .zip(noise)
+                .map(|(x, n)| smooth(*x) + 0.1 * n)
+                .collect()
+        };
+        white += modes.noise(&record(&noise), 0.0).of_modes[0] / 40.0;
+        // A low pass of the first order with a = 0.8: the power at frequency 0 is 1/(1 − a)² of white noise's.
+        let mut held = 0.0;
+        let low: Vec<f64> = noise
+            .iter()
+            .map(|n| {
+                held = 0.8 * held + n;
+                held
+            })
+            .collect();
+        slow += modes.noise(&record(&low), 0.0).of_modes[0] / 40.0;
+    }
+    // 144 powers of each of 40 records: a standard deviation of 2 %.
+    assert_near(white, 0.01, 0.001);
+    // Of slow noise only the tail is beyond the modes: the corner, and so the power at 0, may be any that has this tail.
+    assert!((0.06..4.0).contains(&slow), "{slow}");
+    // A coarse converter has q²/12, also where no sample changes.
+    assert_near(modes.noise(&[1.5; 161], 0.12).variance, 0.0012, 1e-12);
+}
+
+// Verifies: ROB-001, ROB-002, ROB-003.
+#[test]
+fn broken_sensors_are_seen_and_coarse_ones_pass() {
+    let mut channel = noise(161, 0);
+    assert!(!is_saturated(&channel));
+    let coarse: Vec<f64> = channel.iter().map(|v| v.round()).collect();
+    assert!(!is_saturated(&coarse) && step(&coarse) == 1.0);
+    let capped: Vec<f64> = channel.iter().map(|v| v.min(1.0)).collect();
+    assert!(is_saturated(&capped));
+    let raised: Vec<f64> = channel.iter().map(|v| v.max(-1.0)).collect();
+    assert!(is_saturated(&raised));
+    let modes = modes(161);
+    assert_eq!(without_glitches(&modes, &mut channel.clone(), 0.0), Some(0));
+    let own = channel[70];
+    channel[70] += 30.0;
+    assert_eq!(without_glitches(&modes, &mut channel, 0.0), Some(1));
+    assert!((channel[70] - own).abs() < 5.0, "{}", channel[70]);
+    // Each far from those that are left when the larger ones are replaced: nine are more than 8, 5 %.
+    for (at, size) in (0..9).map(|k| (10 + 15 * k, 30.0 * 4.0_f64.powi(k as i32))) {
+        channel[at] += size;
+    }
+    assert_eq!(without_glitches(&modes, &mut channel, 0.0), None);
+    let levels = [1e3, 102.0, 3.0, 1.83, 0.57, 0.2, -0.2, -1.0];
+    let causes = [
+        Some(Cause::ForceUnit),
+        Some(Cause::ForceUnit),
+        Some(Cause::Level),
+        None,
+        None,
+        Some(Cause::NoContact),
+        Some(Cause::NoContact),
+        Some(Cause::Sign),
+    ];
+    assert_eq!(levels.map(wrong_level), causes);
+}
+
+// Verifies: ROB-050.
+#[test]
+fn what_is_known_leaves_the_classes() {
+    let left = |known: &[Part]| {
+        CLASSES
+            .iter()
+            .filter_map(|class| class.parts(known))
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(left(&[]).len(), CLASSES.len());
+    let all = left(&Part::KNOWN);
+    assert_eq!(
+        all,
+        [vec![(Part::Smooth, 0.002)], vec![(Part::Smooth, 0.005)]]
+    );
+    // Both classes of friction alone go; where the gel relaxes too, that stays.
+    let without = left(&[Part::Friction]);
+    assert_eq!(without.len(), CLASSES.len() - 2);
+    let parts: Vec<Part> = without.concat().into_iter().map(|(part, _)| part).collect();
+    assert!(!parts.contains(&Part::Friction) && !parts.contains(&Part::UnevenFriction));
+    assert!(parts.contains(&Part::Relaxation));
+}
+
+// Verifies: ROB-021, ROB-022, ROB-023.
+#[test]
+fn parts_and_classes_are_those_of_the_tables() {
+    let (samples, radius, level) = (41, 6.5e-3, 2.0);
+    let modes = modes(samples);
+    let both = |lateral: f64, normal: f64| [vec![lateral; samples], vec![normal; samples]].concat();
+    let sweep = Undisturbed {
+        forces: both(0.5, level),
+        slope: both(100.0, 1000.0),
+        gel: vec![both(0.0, 0.1)],
+        support: vec![both(0.2, 0.0)],
+        travelled: positions(samples).iter().map(|x| x + 8e-3).collect(),
+        depth: 4e-3,
+        radius,
+        is_tared: false,
+    };
+    let of = Disturbances::new(&modes, &sweep);
+    // A direction, from its lateral and normal force at u.
+    let is = |found: &DVector<f64>, expected: &dyn Fn(f64) -> [f64; 2]| {
+        let series = |channel: usize| {
+            modes
+                .u
+                .iter()
+                .map(|u| expected(*u)[channel])
+                .collect::<Vec<_>>()
+        };
+        let (lateral, normal) = (series(0), series(1));
+        let off = (modes.of(Force::new(&lateral, &normal)) - found).amax();
+        assert!(off < 1e-12, "{off:e}");
+    };
+    let way = |u: f64| 8e-3 * (u + 1.0);
+    let (a, half) = (0.031 * radius, 8e-3);
+    is(&of.part(Part::Stage).vectors[1], &|u| {
+        [100.0 * a * u * u, 1000.0 * a * u * u]
+    });
+    is(&of.part(Part::Surface).vectors[0], &|u| {
+        [
+            a * (100.0 * u - level / half),
+            a * (1000.0 * u + 0.5 / half),
+        ]
+    });
+    is(&of.part(Part::Stage).vectors[5], &|u| {
+        let cos = 0.0046 * radius * (2.0 * PI * u).cos();
+        [100.0 * cos, 1000.0 * cos]
+    });
+    assert_eq!(
+        [Part::Stage, Part::Tilt].map(|part| of.part(part).vectors.len()),
+        [7, 2]
+    );
+    is(&of.part(Part::Gel).vectors[1], &|_| {
+        [0.05 * 4e-3 * 100.0, 0.05 * 4e-3 * 1000.0]
+    });
+    is(&of.part(Part::Support).vectors[0], &|_| [0.2, 0.0]);
+    is(&of.part(Part::Friction).vectors[0], &|_| [0.2 * level, 0.0]);
+    is(&of.part(Part::Friction).vectors[4], &|u| {
+        [0.1 * level * (-way(u) / (0.46 * radius)).exp(), 0.0]
+    });
+    is(&of.part(Part::Relaxation).vectors[1], &|u| {
+        let left = 0.1 * (-way(u) / (0.77 * radius)).exp();
+        [0.5 * left, level * left]
+    });
+    is(&of.always().vectors[0], &|_| [0.3, 0.0]);
+    is(&of.always().vectors[3], &|u| [0.0, 0.15 * u]);
+    is(&of.always().vectors[4], &|_| [0.15, 0.3 * level]);
+    // The first mode is the mean: kᵀKk over all pairs of samples.
+    let first = |part: Part, channel: usize, kernel: &dyn Fn(f64, f64) -> f64| {
+        let rest = of.part(part).rest.unwrap();
+        let at = channel * modes.count();
+        let ways: Vec<f64> = modes.u.iter().map(|u| way(*u)).collect();
+        let pairs = ways.iter().flat_map(|x| ways.iter().map(move |y| (*x, *y)));
+        let sum: f64 = pairs.map(|(x, y)| kernel(x, y)).sum();
+        assert_near(rest[(at, at)], level * level * sum / samples as f64, 1e-10);
+    };
+    let gauss = |x: f64, y: f64, lengths: &[f64]| {
+        let each = lengths
+            .iter()
+            .map(|length| (-0.5 * ((x - y) / (length * radius)).powi(2)).exp());
+        each.sum::<f64>() / lengths.len() as f64
+    };
+    first(Part::Smooth, 1, &|x, y| gauss(x, y, &[0.38, 0.77]));
+    first(Part::Smooth, 0, &|x, y| 0.25 * gauss(x, y, &[0.38, 0.77]));
+    first(Part::Broad, 1, &|x, y| gauss(x, y, &[0.62, 1.23]));
+    first(Part::Friction, 0, &|x, y| {
+        4e-4 * gauss(x, y, &[0.15, 0.38, 0.77])
+    });
+    first(Part::UnevenFriction, 0, &|x, y| gauss(x, y, &[0.38, 0.77]));
+    first(Part::Walk, 0, &|x, y| x.min(y) / 16e-3);
+    // 2, six of 1, and twelve of ½.
+    assert_near(CLASSES.iter().map(|class| class.weight).sum(), 14.0, 0.0);
+    let several = CLASSES
+        .iter()
+        .find(|class| class.name.starts_with("several"))
+        .unwrap();
+    assert_eq!(several.parts(&[]).unwrap().len(), 6);
+}
+
+// Verifies: ROB-030.
+#[test]
+fn what_sweeps_share_is_one_disturbance() {
+    let sweep = |value: f64| Covariance {
+        vectors: vec![DVector::from_vec(vec![value])],
+        rest: Some(DMatrix::from_element(1, 1, 10.0)),
+    };
+    let sweeps = [sweep(2.0), sweep(3.0)];
+    let [shared, own] = [true, false].map(|is_shared| joined(&sweeps, is_shared));
+    assert_eq!(
+        shared,
+        DMatrix::from_row_slice(2, 2, &[14.0, 6.0, 6.0, 19.0])
+    );
+    assert_eq!(own, DMatrix::from_row_slice(2, 2, &[14.0, 0.0, 0.0, 19.0]));
+}
+
+fn bank() -> Bank {
+    let laterals: Vec<f64> = (-8..=8).map(|x| f64::from(x) * 1e-3).collect();
+    let mut plan = BankPlan::new(Phantom::builtin("4.6").unwrap(), 4e-3, &laterals).unwrap();
+    plan.mesh_size = 2e-3;
+    plan.positions = (-2..=2).map(|x| f64::from(2 * x) * 1e-3).collect();
+    plan.depths = vec![3.6e-3, 4.6e-3, 5.6e-3];
+    plan.bank().unwrap()
+}
+
+// Verifies: ROB-020, ROB-032, ROB-040, ROB-041, ROB-042, ROB-043, ROB-004.
+#[test]
+fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
+    let bank = bank();
+    let changes = GelChanges::new(bank.reference(), bank.depth())
+        .unwrap()
+        .unwrap();
+    // Each change of the paper's gel is possible in both directions.
+    assert_eq!((changes.gel.len(), changes.support.len()), (5, 2));
+    let question = RobustQuestion {
+        known: &[],
+        is_tared: false,
+        noise_sd: None,
+        prior_h1: 0.5,
+        sure: 0.95,
+    };
+    let over = positions(161);
+    let record = |map: usize, scale: f64| {
+        let table = match map {
+            usize::MAX => bank.reference().table(),
+            map => bank.maps()[map].table(),
+        };
+        let forces = table.sweep(bank.depth(), &over).unwrap();
+        let noisy = |channel: Vec<f64>, trial| -> Vec<f64> {
+            channel
+                .iter()
+                .zip(noise(161, trial))
+                .map(|(f, n)| scale * (f + 0.02 * n))
+                .collect()
+        };
+        let (lateral, normal) = (noisy(forces.lateral, 5), noisy(forces.normal, 6));
+        Record::new("sweep", &over, Force::new(&lateral, &normal)).unwrap()
+    };
+    let judge = |record: &Record| {
+        question
+            .locate(&bank, None, Some(&changes), &[record])
+            .unwrap()
+    };
+    // The disc at 2 mm, 4.6 mm deep, in a gel 20 % stiffer.
+    let disc = (0..bank.maps().len())
+        .find(|&map| bank.point(map)[..2] == [2e-3, 4.6e-3])
+        .unwrap();
+    let (answer, place) = judge(&record(disc, 1.2));
+    assert_eq!(answer.decision, Some(Decision::Inclusion), "{answer:?}");
+    // The disc carries a part.
+    assert!((1.2..1.5).contains(&answer.levels[0]), "{answer:?}");
+    assert!(
+        answer.noise_sd[0]
+            .into_array()
+            .iter()
+            .all(|sd| (0.02..0.03).contains(sd)),
+        "{answer:?}"
+    );
+    let [position, depth, diameter, modulus] = place.intervals;
+    let position = position.unwrap();
+    assert_eq!((position.lower, position.upper), (Some(1e-3), Some(3e-3)));
+    assert_near(position.estimate, 2e-3, 0.3e-3);
+    assert!(
+        depth.unwrap().lower.is_none_or(|lower| lower < 4.6e-3),
+        "{place:?}"
+    );
+    assert!(
+        depth.unwrap().upper.is_none_or(|upper| upper > 4.6e-3),
+        "{place:?}"
+    );
+    assert!(diameter.is_none() && modulus.is_none() && place.none_down_to.is_none());
+    let (answer, place) = judge(&record(usize::MAX, 1.0));
+    assert_eq!(answer.decision, Some(Decision::NoInclusion), "{answer:?}");
+    assert_eq!(place.none_down_to, Some(5.6e-3));
+    for hypothesis in [0, 1] {
+        let shares = answer.classes.iter().map(|(_, shares)| shares[hypothesis]);
+        assert_near(shares.sum(), 1.0, 1e-12);
+    }
+    // Metres in place of millimetres.
+    let wrong: Vec<f64> = over.iter().map(|x| 1e-3 * x).collect();
+    let forces = record(disc, 1.0);
+    let narrow = Record::new("sweep", &wrong, forces.forces()).unwrap();
+    let (answer, _) = judge(&narrow);
+    assert_eq!(
+        (answer.decision, &answer.causes[..]),
+        (None, &[Cause::Narrow][..])
+    );
+    // A sensor that was set to zero on the gel never says that there is nothing.
+    let tared = RobustQuestion {
+        is_tared: true,
+        ..question
+    };
+    let (answer, _) = tared
+        .locate(&bank, None, Some(&changes), &[&record(usize::MAX, 1.0)])
+        .unwrap();
+    assert_eq!(
+        (answer.decision, &answer.causes[..]),
+        (None, &[Cause::TooWeak][..])
+    );
+}
+
+// Verifies: ROB-032.
+#[test]
+fn the_prior_of_a_banks_hypotheses_adds_up_to_one() {
+    let bank = bank();
+    let over = Record::new("over", &positions(30), Force::new(&[0.0; 30], &[0.0; 30])).unwrap();
+    let signals = BankHypotheses::new(&bank, None).signals(&[&over]).unwrap();
+    // 15 maps; pairs 6 and 8 mm apart: 2 and 1 at each of 3 depths.
+    assert_eq!(signals.len(), 15 + 9);
+    assert_near(signals.iter().map(|signal| signal.prior).sum(), 1.0, 1e-12);
+    assert_near(
+        signals[..15].iter().map(|signal| signal.prior).sum(),
+        0.8,
+        1e-12,
+    );
+    let mut prior = vec![0.0; 15];
+    prior[7] = 1.0;
+    let alone = BankHypotheses::new(&bank, Some(&prior))
+        .signals(&[&over])
+        .unwrap();
+    assert_eq!((alone.len(), alone[0].prior), (1, 1.0));
+}

@@ -1,0 +1,325 @@
+//! Sweeps that the classes of the robust detector did not make: other gels, meshes, motions, sensors, and a gel at finite strain. What is
+//! the largest share of false answers? `spec/robust.md` has the results.
+
+mod families;
+
+use std::collections::BTreeMap;
+
+use families::{DEPTH, Ends, GELS, Happens, MOTIONS, nothing, plain};
+use palpate::bank::{Bank, BankPlan};
+use palpate::detect::Decision;
+use palpate::fem::{Contact, Model};
+use palpate::force::Force;
+use palpate::force_map::ForceTable;
+use palpate::phantom::{Phantom, PhantomParts};
+use palpate::robust::{
+    BankHypotheses, GelChanges, RobustAnswer, RobustDetector, RobustPlace, RobustQuestion,
+    RobustSweep,
+};
+use palpate::stats::random::{Generator, uniform};
+use palpate::trace::{Cause, Record};
+
+const SAMPLES: usize = 161;
+/// The depth of the disc in each gel, m; 0 without one.
+const DISCS: [f64; 3] = [0.0, 4.6e-3, 6.6e-3];
+/// The standard deviations of the noise, N.
+const NOISE: [f64; 2] = [0.02, 0.1];
+const QUESTION: RobustQuestion = RobustQuestion {
+    known: &[],
+    is_tared: false,
+    noise_sd: None,
+    prior_h1: 0.5,
+    sure: 0.95,
+};
+
+/// A gel with each of the discs.
+type Gel = [ForceTable; 3];
+
+fn phantom(disc: f64, change: fn(&mut PhantomParts)) -> Phantom {
+    let changed = Phantom::builtin("6.6").unwrap().changed(|parts| {
+        match disc {
+            0.0 => parts.inclusions.clear(),
+            _ => parts.inclusions[0].depth = disc,
+        }
+        change(parts);
+    });
+    changed.unwrap()
+}
+
+fn laterals(step: f64) -> Vec<f64> {
+    let half = (8.76e-3 / step) as i32;
+    (-half..=half).map(|k| f64::from(k) * step).collect()
+}
+
+/// A gel on a finer mesh than the bank's.
+fn gel(change: fn(&mut PhantomParts), depths: &[f64]) -> Gel {
+    DISCS.map(|disc| {
+        let model = Model::new(&phantom(disc, change), 0.45e-3, Contact::default()).unwrap();
+        let map = match depths {
+            [depth] => model.sweep(*depth, &laterals(0.25e-3)),
+            _ => model.map(depths, &laterals(0.25e-3), &|_| ()),
+        };
+        map.unwrap().table().clone()
+    })
+}
+
+/// Gels at finite strain, by another program: `tables/finite_strain.txt`.
+fn finite_gels() -> Vec<(String, Gel)> {
+    let text = include_str!("tables/finite_strain.txt");
+    let mut tables: BTreeMap<(String, String), String> = BTreeMap::new();
+    for row in text.lines().filter(|row| !row.starts_with('#')) {
+        let [gel, disc, x, lateral, normal] = row.split_whitespace().collect::<Vec<_>>()[..] else {
+            panic!("{row}");
+        };
+        let header = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n";
+        let table = tables
+            .entry((gel.into(), disc.into()))
+            .or_insert(header.into());
+        *table += &format!("4,{x},{normal},{lateral}\n");
+    }
+    let names = [
+        "hyperelastic",
+        "hyperelastic-friction-0.2",
+        "hyperelastic-nu-0.48",
+    ];
+    let of = |name: &str, disc: &str| {
+        ForceTable::from_csv(&tables[&(name.into(), disc.into())], name).unwrap()
+    };
+    names
+        .map(|name| {
+            (
+                name.into(),
+                ["none", "4.6", "6.6"].map(|disc| of(name, disc)),
+            )
+        })
+        .into()
+}
+
+fn bank() -> Bank {
+    let mut plan = BankPlan::new(phantom(6.6e-3, |_| ()), DEPTH, &laterals(0.5e-3)).unwrap();
+    plan.positions = (-6..=6).map(|k| f64::from(k) * 1e-3).collect();
+    plan.depths = (0..7).map(|k| 2.6e-3 + f64::from(k) * 1e-3).collect();
+    plan.bank().unwrap()
+}
+
+fn positions() -> Vec<f64> {
+    let step = 16e-3 / (SAMPLES - 1) as f64;
+    (0..SAMPLES).map(|k| step * k as f64 - 8e-3).collect()
+}
+
+/// Record `trial` of a family: an offset up to 0.1 N, a drift up to 0.05 N, and noise.
+fn record(
+    table: &ForceTable,
+    (happens, ends): (Happens, Ends),
+    sd: f64,
+    stream: u64,
+    trial: u64,
+) -> [Vec<f64>; 2] {
+    let generator = Generator::new(1999, stream);
+    let words = [7, 8].map(|counter| generator.words([counter, trial, 2, 0]).map(uniform));
+    let u: [f64; 8] = words.concat().try_into().unwrap();
+    let one_depth = table.depths().len() == 1;
+    let [first, last] = [0, table.laterals().len() - 1].map(|at| table.laterals()[at]);
+    let gel = |depth: f64, x: f64| {
+        let depth = if one_depth { table.depths()[0] } else { depth };
+        let force = table.sweep(depth, &[x.clamp(first, last)]).unwrap();
+        [force.lateral[0], force.normal[0]]
+    };
+    let mut noise = vec![0.0; 2 * SAMPLES + 4];
+    generator.normals(trial, 0, &mut noise);
+    let mut channels = [Vec::new(), Vec::new()];
+    for (at, x) in positions().into_iter().enumerate() {
+        let forces = happens(&gel, x, &u);
+        for (c, channel) in channels.iter_mut().enumerate() {
+            let [offset, drift] = [0, 1].map(|of| noise[2 * SAMPLES + 2 * c + of].clamp(-1.0, 1.0));
+            let line = 0.1 * offset + 0.05 * drift * x / 8e-3;
+            channel.push(forces[c] + line + sd * noise[c * SAMPLES + at]);
+        }
+    }
+    ends(&mut channels, &u, &generator, trial);
+    channels
+}
+
+/// The detectors by two maps, with the disc 4.6 mm deep, and by the bank.
+fn detectors(bank: &Bank) -> [RobustDetector; 2] {
+    let zeros = vec![0.0; SAMPLES];
+    let over = Record::new("over", &positions(), Force::new(&zeros, &zeros)).unwrap();
+    let changes = GelChanges::new(bank.reference(), DEPTH).unwrap();
+    let sweep = RobustSweep {
+        record: &over,
+        depth: DEPTH,
+        changes: changes.as_ref(),
+    };
+    let signals = BankHypotheses::new(bank, None).signals(&[&over]).unwrap();
+    let is_disc = |map: &usize| bank.point(*map)[..2] == [0.0, 4.6e-3];
+    let map = (0..bank.maps().len()).find(is_disc).unwrap();
+    let mut disc = signals[map].clone();
+    disc.prior = 1.0;
+    [&[disc][..], &signals].map(|signals| {
+        RobustDetector::new(&QUESTION, bank.reference().table(), &[sweep], signals).unwrap()
+    })
+}
+
+/// Counts of the answers inclusion, no inclusion, cannot be judged.
+type Counts = [u64; 3];
+
+fn answers(
+    detector: &RobustDetector,
+    records: impl Iterator<Item = [Vec<f64>; 2]>,
+) -> (Counts, Vec<RobustAnswer>) {
+    let mut counts = [0; 3];
+    let judge = |channels: [Vec<f64>; 2]| {
+        let forces = Force::new(&channels[0][..], &channels[1][..]);
+        detector.judge(&QUESTION, &[forces]).unwrap()
+    };
+    let answers: Vec<_> = records.map(judge).collect();
+    for answer in &answers {
+        counts[match answer.decision {
+            Some(Decision::Inclusion) => 0,
+            Some(Decision::NoInclusion) => 1,
+            None => 2,
+        }] += 1;
+    }
+    (counts, answers)
+}
+
+/// False answers of 30 that a family may have in a cell, by maps and by the bank, where that is more than one: a bump of the surface
+/// is an inclusion to 87 % (`spec/limits.md`).
+const WORST: [(&str, [u64; 2]); 1] = [("bump", [3, 6])];
+
+// Verifies: ROB-060, ROB-041, ROB-022.
+#[test]
+#[ignore = "half an hour without optimisation"]
+fn false_answers_are_rare_in_every_family() {
+    rates(30, &|_| true);
+}
+
+// Verifies: ROB-001, ROB-002, ROB-003, ROB-060.
+#[test]
+fn records_of_a_broken_sensor_are_not_judged() {
+    let causes = [
+        ("saturated", Cause::Saturated),
+        ("mN", Cause::ForceUnit),
+        ("gf", Cause::ForceUnit),
+        ("sign", Cause::Sign),
+        ("air", Cause::NoContact),
+    ];
+    let bank = bank();
+    let table = bank.reference().table().row(DEPTH).unwrap();
+    let text = |row: usize| {
+        format!(
+            "4,{},{},{}\n",
+            1e3 * bank.reference().table().laterals()[row],
+            table.normal[row],
+            table.lateral[row]
+        )
+    };
+    let rows: String = (0..table.normal.len()).map(text).collect();
+    let table = ForceTable::from_csv(
+        &format!("depth_mm,lateral_mm,normal_force_n,lateral_force_n\n{rows}"),
+        "gel",
+    )
+    .unwrap();
+    for detector in &detectors(&bank) {
+        for (stream, (family, cause)) in (1000..).zip(causes) {
+            let of = MOTIONS.iter().find(|of| of.0 == family).unwrap();
+            let records = (0..10).map(|trial| record(&table, (of.1, of.2), 0.05, stream, trial));
+            for answer in answers(detector, records).1 {
+                assert_eq!(
+                    (answer.decision, &answer.causes[..]),
+                    (None, &[cause][..]),
+                    "{family}"
+                );
+            }
+        }
+    }
+}
+
+fn rates(records: u64, is_wanted: &dyn Fn(&str) -> bool) {
+    let bank = bank();
+    let detectors = detectors(&bank);
+    let hypotheses = BankHypotheses::new(&bank, None);
+    let own = gel(|_| (), &[3.2e-3, 3.6e-3, 4e-3, 4.4e-3, 4.8e-3]);
+    let mut families: Vec<(String, Gel, (Happens, Ends))> = Vec::new();
+    for (name, happens, ends) in MOTIONS {
+        families.push(((*name).into(), own.clone(), (*happens, *ends)));
+    }
+    let calm: (Happens, Ends) = (plain, nothing);
+    for (name, change) in GELS {
+        if is_wanted(name) {
+            families.push(((*name).into(), gel(*change, &[DEPTH]), calm));
+        }
+    }
+    families.extend(
+        finite_gels()
+            .into_iter()
+            .map(|(name, gel)| (name, gel, calm)),
+    );
+    let mut wrong = Vec::new();
+    let mut covered = Covered::default();
+    for (stream, (name, gel, how)) in (0..).zip(&families) {
+        if !is_wanted(name) {
+            continue;
+        }
+        for (mode, detector) in ["maps", "bank"].into_iter().zip(&detectors) {
+            let mut told = format!("{name:26} {mode}");
+            let mut most = 0;
+            for (s, sd) in (0..).zip(NOISE) {
+                for (d, table) in gel.iter().enumerate() {
+                    // Two maps say nothing of another disc than theirs.
+                    if mode == "maps" && d == 2 {
+                        continue;
+                    }
+                    let stream = 100 * stream + 10 * d as u64 + s;
+                    let all = (0..records).map(|trial| record(table, *how, sd, stream, trial));
+                    let ([found, none, unjudged], answers) = answers(detector, all);
+                    // Where the gel, and not a sensor or a motion, differs from the maps'.
+                    if mode == "bank" && d > 0 && table.depths().len() == 1 {
+                        let places = answers.iter().filter(|answer| !answer.thetas.is_empty());
+                        for place in places.map(|answer| hypotheses.place(answer)) {
+                            covered.add(&place, [0.0, DISCS[d]]);
+                        }
+                    }
+                    told += &format!(" | {found:2}/{none:2}/{unjudged:2}");
+                    most = most.max(match d {
+                        0 => found,
+                        1 => none,
+                        _ => 0,
+                    });
+                }
+            }
+            println!("{told}");
+            let known = WORST.iter().find(|(family, _)| family == name);
+            let allowed = known.map_or(records / 20, |(_, of)| of[usize::from(mode == "bank")]);
+            if most > allowed {
+                wrong.push(format!("{name}, {mode}: {most} of {records} are false"));
+            }
+        }
+    }
+    let Covered { places, held } = covered;
+    println!("of {places} places, the intervals of position and depth hold {held:?}");
+    assert!(wrong.is_empty(), "{wrong:#?}");
+    assert!(
+        held.iter().all(|held| 10 * held >= 9 * places),
+        "{held:?} of {places}"
+    );
+}
+
+/// How many intervals of position and depth hold the truth.
+#[derive(Default)]
+struct Covered {
+    places: u64,
+    held: [u64; 2],
+}
+
+impl Covered {
+    fn add(&mut self, place: &RobustPlace, truth: [f64; 2]) {
+        self.places += 1;
+        for (axis, held) in self.held.iter_mut().enumerate() {
+            let interval = place.intervals[axis].unwrap();
+            let is_above = interval.lower.is_none_or(|lower| lower <= truth[axis]);
+            let is_below = interval.upper.is_none_or(|upper| truth[axis] <= upper);
+            *held += u64::from(is_above && is_below);
+        }
+    }
+}
