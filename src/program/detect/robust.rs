@@ -9,7 +9,7 @@ use crate::error::refuse;
 use crate::output::Envelope;
 use palpate::bank::Bank;
 use palpate::detect::Decision;
-use palpate::force_map::ForceMap;
+use palpate::force_map::{ForceMap, SAME_POSITION};
 use palpate::phantom::Phantom;
 use palpate::robust::{GelChanges, RobustAnswer, RobustQuestion, RobustSweep};
 use palpate::rows::Rows;
@@ -142,7 +142,7 @@ fn by_bank(
     let depths = depths(arguments, records.len(), bank.depth())?;
     if let Some(depth) = depths
         .iter()
-        .find(|depth| (*depth - bank.depth()).abs() > 1e-9)
+        .find(|depth| (*depth - bank.depth()).abs() > SAME_POSITION)
     {
         let [depth, of_bank] = [*depth, bank.depth()].map(palpate::decimal::mm);
         refuse!("--depth-mm {depth} is not the bank's; give {of_bank}, or a bank for that depth");
