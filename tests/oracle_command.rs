@@ -306,6 +306,13 @@ fn work_beyond_the_limits_is_refused_before_it_begins() {
         json!({"residual": [1, 2, 0], "templates": [[0, 1, 0]], "nuisances": vec![[1, 1, 1]; number], "level": "known",
                "prior": [1], "prior_h1": 0.5})
     };
+    let robust = |modes: usize, classes: usize, signals: usize| {
+        json!({"record": ones(modes), "noise": ones(modes), "weights": ones(classes), "signals": vec![ones(modes); signals],
+               "covariances": vec![vec![0; modes]; modes * classes], "sizes": ones(signals),
+               "prior": vec![1.0 / signals as f64; signals], "shape": vec![vec![0; modes]; modes]})
+    };
+    ok("robust_evidence", robust(200, 1, 1));
+    ok("robust_evidence", robust(1, 100, 1000));
     ok("theta_nuisances", beside(100));
     ok("bank_posterior", bank(100));
     // 1000 products at each of the shifts of the whole template: 10,000 shifts are allowed.
@@ -316,6 +323,9 @@ fn work_beyond_the_limits_is_refused_before_it_begins() {
         ("theta_colored", coloured, "at most 1000"),
         ("theta_nuisances", beside(101), "at most 100"),
         ("bank_posterior", bank(101), "at most 100"),
+        ("robust_evidence", robust(201, 1, 1), "at most 200"),
+        ("robust_evidence", robust(1, 101, 1), "at most 100"),
+        ("robust_evidence", robust(1, 1, 1001), "at most 1000"),
     ] {
         let (code, message) = refused(op, args);
         assert_eq!(code, "out_of_range");

@@ -111,7 +111,13 @@ fn pivot(diagonal: f64, sum: DoubleDouble, order: usize, row: usize) -> Result<f
     is_sound.then(|| libm::sqrt(pivot)).ok_or(error)
 }
 
-fn check_symmetric(covariance: &[f64], order: usize) -> Result<(), DetectError> {
+/// Checks that a covariance of `order` rows, row by row, is symmetric to rounding.
+///
+/// # Errors
+/// An entry below the diagonal that differs from its mirror image.
+///
+/// Implements: DET-043.
+pub fn check_symmetric(covariance: &[f64], order: usize) -> Result<(), DetectError> {
     /// Asymmetry that rounding explains, relative to the two standard deviations.
     const TOLERANCE: f64 = 1e-12;
     let entry = |row: usize, column: usize| covariance[row * order + column];

@@ -11,6 +11,7 @@ mod hid_report;
 mod interpolation;
 mod nuisance;
 mod probe;
+mod robust;
 mod servo;
 
 use super::answer::{Code, Refused, answer, json};
@@ -71,6 +72,11 @@ pub const OPS: &[Op] = &[
     op!("bank_posterior", {
         residual: List<f64>, templates: Rows, nuisances: Rows, level: String, prior: List<f64>, prior_h1: f64
     } => nuisance::bank_posterior(&residual.0, &templates, &nuisances, &level, &prior.0, prior_h1)?),
+    op!("robust_evidence", {
+        record: List<f64>, noise: List<f64>, weights: List<f64>, covariances: Rows, signals: Rows, sizes: List<f64>,
+        prior: List<f64>, shape: Rows
+    } => robust::evidence_of(
+        [record.0, noise.0], (&weights.0, &covariances), (&signals, &sizes.0, &prior.0), &shape)?),
     op!("threshold", text => answer! { eta: decision::threshold(text)? }),
     op!("error_rates", { gamma: f64, eta: f64 } => detect::error_rates(gamma, eta)?),
     op!("roc", { gamma: f64, false_alarm: List<f64> } => decision::roc(gamma, &false_alarm.0)?),
