@@ -125,6 +125,49 @@ def bank_posterior(a):
     }
 
 
+def normal_density(covariance, record):
+    """ln of the density without (2π)^(−n/2), and the distance squared, by elimination in the exact matrix with the record as another
+    row and column: the pivots are the determinant's factors, and the last entry is −yᵀK⁻¹y."""
+    rows = [row + [y] for row, y in zip(covariance, record)] + [record + [Fraction(0)]]
+    determinant = Fraction(1)
+    for k in range(len(record)):
+        if rows[k][k] <= 0:
+            raise right.Refused("out_of_range", "not positive definite")
+        determinant *= rows[k][k]
+        for i in range(k + 1, len(rows)):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k])]
+    distance = real(-rows[-1][-1])
+    return -(distance + log(real(determinant))) / 2, distance
+
+
+def robust_evidence(a):
+    """Each law of its own whole covariance, and the sums of densities as they stand."""
+    record, means, shape = ([[Fraction(v) for v in row] for row in rows] for rows in ([a["record"]], a["signals"], a["shape"]))
+    n, whole = len(record[0]), sum(map(Fraction, a["weights"]))
+    noise = [Fraction(v) for v in a["noise"]]
+    sizes, prior = [0, *a["sizes"]], [0, *map(real, a["prior"])]
+    laws = []
+    for number, weight in enumerate(a["weights"]):
+        rows = [[Fraction(v) for v in row] for row in a["covariances"][number * n : number * n + n]]
+        for mean, size in zip([[Fraction(0)] * n, *means], sizes):
+            share = (Fraction(3, 20) * Fraction(size)) ** 2
+            entry = lambda i, j: rows[i][j] + (i == j) * noise[i] + share * shape[i][j] + Fraction(4, 25) * mean[i] * mean[j]
+            covariance = [[entry(i, j) for j in range(n)] for i in range(n)]
+            density, distance = normal_density(covariance, [y - m for y, m in zip(record[0], mean)])
+            laws.append((log(real(Fraction(weight) / whole)) + density, distance))
+    count = len(sizes)
+    densities = [[exp(density) for density, _ in laws[at : at + count]] for at in range(0, len(laws), count)]
+    by_class = [sum(share * density for share, density in zip(prior, row)) for row in densities]
+    return {
+        "without": [laws[at][0] for at in range(0, len(laws), count)],
+        "by_class": [log(value) for value in by_class],
+        "with": [log(sum(column)) for column in list(zip(*densities))[1:]],
+        "theta": log(sum(by_class) / sum(row[0] for row in densities)),
+        "distance": max(laws)[1],
+    }
+
+
 def tail_by_density(density, x, is_upper, width):
     """The integral of a density beyond x, in ln x, over intervals of growing length until nothing is added."""
     total, at = mpf(0), log(x)
@@ -281,7 +324,7 @@ def element_stiffness(a):
 ROUTES = {
     route.__name__: route
     for route in (
-        chi_square_tail, f_tail, student_tail, theta_nuisances, bank_posterior, servo_axis, servo_interpolate,
+        chi_square_tail, f_tail, student_tail, theta_nuisances, bank_posterior, robust_evidence, servo_axis, servo_interpolate,
         element_stiffness,
     )
 }

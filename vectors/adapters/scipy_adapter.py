@@ -245,6 +245,42 @@ def bank_posterior(residual: series, templates: rows, nuisances: rows, level: is
             "posterior_h1": special.expit(mixture + special.logit(prior_h1)), "posterior": prior * np.exp(theta - mixture)}  # fmt: skip
 
 
+# Classes of disturbance (spec/robust.md)
+
+
+def symmetric(name, matrix):
+    sd = np.sqrt(np.abs(matrix.diagonal()))
+    refuse_if(np.any(np.abs(matrix - matrix.T) > 1e-12 * np.outer(sd, sd)), "out_of_range", f"{name} is not symmetric")
+
+
+def robust_evidence(record: series, noise: series, weights: series, covariances: rows, signals: rows, sizes: series, prior: series,
+                    shape: rows):  # fmt: skip
+    n, classes = len(record), len(weights)
+    fits = len(noise) == n and covariances.shape == (classes * n, n) and signals.shape == (len(sizes), n) and shape.shape == (n, n)
+    refuse_if(not fits or len(prior) != len(sizes), "bad_argument", "lengths differ")
+    refuse_if(np.any(noise <= 0) or np.any(weights <= 0) or np.any(sizes < 1e-9), "out_of_range", "noise, weights and sizes are above 0")
+    refuse_if(np.any(prior < 0) or abs(prior.sum() - 1) > 1e-9, "out_of_range", "priors do not add up to 1")
+    symmetric("shape", shape)
+
+    def law(mean, covariance):
+        factor = stats.Covariance.from_cholesky(linalg.cholesky(covariance, lower=True))
+        density = stats.multivariate_normal.logpdf(record, mean, factor) + n / 2 * np.log(2 * np.pi)
+        return density, np.sum(factor.whiten(record - mean) ** 2)
+
+    laws = []
+    for covariance in covariances.reshape(classes, n, n):
+        symmetric("a class", covariance)
+        plain = covariance + np.diag(noise)
+        beside = [plain + 0.16 * np.outer(m, m) + (0.15 * size) ** 2 * shape for m, size in zip(signals, sizes)]
+        laws.append([law(np.zeros(n), plain), *map(law, signals, beside)])
+    density, distance = np.moveaxis(np.array(laws), 2, 0)
+    density += np.log(weights / weights.sum())[:, None]
+    by_class = special.logsumexp(density[:, 1:], b=prior, axis=1)
+    theta = special.logsumexp(by_class) - special.logsumexp(density[:, 0])
+    return {"without": density[:, 0], "by_class": by_class, "with": special.logsumexp(density[:, 1:], axis=0), "theta": theta,
+            "distance": distance.flat[density.argmax()]}  # fmt: skip
+
+
 def capabilities():
     return {"version": f"SciPy {scipy.__version__}", "ops": sorted(OPS)}
 
@@ -252,7 +288,7 @@ def capabilities():
 OPS = {op.__name__: op for op in (
     capabilities, normal_cdf, normal_quantile, two_afc, gamma_from_two_afc, error_rates, roc, required_gamma, noise_budget, threshold,
     proportion_interval, count_analysis, chi_square_tail, f_tail, student_tail, matched_filter, theta, theta_colored, scan,
-    theta_nuisances, bank_posterior, *scipy_tables.OPS)}  # fmt: skip
+    theta_nuisances, bank_posterior, robust_evidence, *scipy_tables.OPS)}  # fmt: skip
 
 if __name__ == "__main__":
     with np.errstate(all="ignore"):

@@ -92,6 +92,18 @@ BUGS = {
     ),
     "impossible_counts": ("Θ_max of a hypothesis that cannot be, or that the nuisances explain", ""),
     "posterior_for_theta": ("the hypothesis of the largest posterior for that of the largest θ", ""),
+    # Classes of disturbance
+    "weights_not_normalised": ("the weights of the classes are not divided by their sum", ""),
+    "weights_ignored": ("all classes are taken for equally probable", ""),
+    "weights_under_one_hypothesis": ("the weights count without an inclusion alone", "each class has its weight under either hypothesis"),
+    "class_forgotten": ("a class does not count for the signals", ""),
+    "amplitude_fixed": ("the amplitude of a signal is taken for certain", "0.4² m mᵀ belongs to the covariance"),
+    "shape_ignored": ("the shape of a signal is taken for certain", "(0.15 ρ)² D belongs to the covariance"),
+    "size_ignored": ("the size ρ of a signal is left out", "the shape is off by a share of ρ"),
+    "size_of_another": ("ρ of another signal", ""),
+    "determinant_ignored": ("the determinant is left out of the density", "a class that allows more has a smaller density everywhere"),
+    "root_of_determinant_missing": ("ln det for ½ ln det", ""),
+    "factor_of_density": ("the factor (2π)^(−n/2) is not left out", ""),
     # Detector
     "variance_for_sd": ("a variance where a standard deviation is meant, or the other way round", ""),
     "weight_missing": ("the weight 1/N of a sample is left out", "‖f‖ is the root mean square, σ = s/√N"),

@@ -105,6 +105,7 @@ fn bugs_of_laws_and_nuisances_are_named() {
         bias_ignored | theta_nuisances | s/"bias":[^,}]*/"bias":0/
         prior_ignored | bank_posterior | s/"prior":\[[^],]*,[^],]*\]/"prior":[0.5,0.5]/
         level_ignored | bank_posterior | s/"unknown"/"known"/
+        weights_ignored | robust_evidence | s/"weights":\[[^],]*,[^],]*\]/"weights":[1,1]/
         nuisances_ignored | bank_posterior | s/"nuisances":.*,"prior"/"nuisances":[],"prior"/
         "#,
     ) {
