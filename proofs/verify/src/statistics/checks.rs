@@ -106,3 +106,41 @@ pub(super) fn mean_of_bounded_test(sample: &[f64], alpha: f64) -> Figure {
     let what = format!("mean of {n} differences (limits: Hoeffding)");
     Figure::within(what, sum / n, -limit, limit)
 }
+
+/// Is each cell the true one as often as is told? Each trial tells ln of the cells' weights, whose shares p are the probabilities, and the
+/// cell that is true. Bets at the odds of p gain nothing but by chance: with the shares q of any other law, E Π q/p = 1, and so
+/// Pr(Π q/p ≥ 1/α) ≤ α (Markov), whatever the number of trials. Of four bets, with α/4 each, q is p^0.7 and p^1.4 (what is told is too sure,
+/// or not sure enough), and p exp(±s/2) with a score s of each cell.
+pub(super) fn odds_test(
+    told: impl Iterator<Item = Outcome<(Vec<f64>, usize)>>,
+    scores: &[f64],
+    alpha: f64,
+) -> Outcome<Figure> {
+    const BETS: [(f64, f64); 4] = [(0.7, 0.0), (1.4, 0.0), (1.0, -0.5), (1.0, 0.5)];
+    let (mut gains, mut n) = ([0.0; 4], 0);
+    for trial in told {
+        let (logs, truth) = trial?;
+        let own = log_share(&logs, truth);
+        for (gain, (power, tilt)) in gains.iter_mut().zip(BETS) {
+            let bet = logs.iter().zip(scores);
+            let bet: Vec<f64> = bet.map(|(log, score)| power * log + tilt * score).collect();
+            *gain += log_share(&bet, truth) - own;
+        }
+        n += 1;
+    }
+    let most = gains.into_iter().fold(f64::NEG_INFINITY, f64::max);
+    let what = format!("largest ln of the gain of four bets on {n} (limit: Markov)");
+    Ok(Figure::at_most(what, most, libm::log(4.0 / alpha)))
+}
+
+/// ln of the share of a weight, of the logarithms of all.
+fn log_share(logs: &[f64], at: usize) -> f64 {
+    logs[at] - log_sum(logs)
+}
+
+/// ln Σ eˣ.
+pub(super) fn log_sum(logs: &[f64]) -> f64 {
+    let largest = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let sum = logs.iter().map(|log| libm::exp(log - largest));
+    largest + libm::log(sum.sum())
+}

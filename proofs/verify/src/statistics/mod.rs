@@ -33,6 +33,7 @@ mod gaussian;
 mod generator;
 mod ledger;
 mod nuisance;
+mod robust;
 
 use crate::Figure;
 pub use ledger::Row;
@@ -91,6 +92,7 @@ pub fn battery() -> impl Iterator<Item = &'static Check> {
         bounds::CHECKS,
         nuisance::CHECKS,
         bank::CHECKS,
+        robust::CHECKS,
     ]
     .into_iter()
     .flatten()

@@ -7,7 +7,8 @@ import pathlib
 
 import numpy as np
 from scipy.integrate import quad
-from scipy.stats import binom, chi2, f, nct, ncf, ncx2, norm, t
+from scipy.special import logsumexp
+from scipy.stats import binom, chi2, f, nct, ncf, ncx2, norm, qmc, t
 
 ALPHA = 2.5e-8
 DEFECTS = ["variance_off_1_percent", "half_left_out", "template_shifted", "channels_swapped", "sd_for_variance"]
@@ -323,3 +324,80 @@ def excess_power(presumed, half):
 halves, unsquared = [gamma**2 / 2 for gamma in gammas], [gamma / 2 for gamma in gammas]
 powers = {"prior_left_out": excess_power(0.5, halves), "gamma_for_its_square": excess_power(prior, unsquared)}
 line("bank_posterior_of_inclusion", TRIALS, **powers)
+
+# The classes and signals of robust.rs: mean and variance of ln of a bet's gain, by 4,096 of Sobol's points for each class and signal.
+TRIALS, noise, prior_h1 = 4_000, 0.25, 0.4
+weights, shares, sizes = np.array([8, 2, 1, 1.0]), np.array([0.3, 0.3, 0.2, 0.2]), np.array([4, 4, 2, 2])
+means = np.array([[0, 2, 3, -1, 1, 2], [0, 1, 2, -2, 1, 2], [0, 1, 2, 0, -1, 2], [0, 1, 1, -1, 0, 1]])
+directions = [[], [[0, 2, 1, 0, 0, 1], [0, 0, 2, 1, 0, -3]], [[2, 0, -2, 2, 0, 3]], [[0, 1, 3, -2, 1, 3]]]
+outer = lambda vectors: sum((np.outer(v, v) for v in vectors), np.zeros((6, 6)))
+classes = [outer([[2, 0, 0, 0, 0, 0], *own]) for own in directions]
+shape = outer([[0, 1, 0, 1, 0, 0], [0, 0, 1, 0, 1, 0], [0, 0, 0, 1, 1, 1]])
+points = norm.ppf((qmc.Sobol(6, scramble=False).random(4096) + 0.5 / 4096) % 1)
+
+
+def law(number, k, amplitude=0.4):
+    """Mean and covariance, beside the noise, of a class without a signal (k = -1) and with one."""
+    if k < 0:
+        return np.zeros(6), classes[number]
+    own = amplitude**2 * np.outer(means[k], means[k]) + (0.15 * sizes[k]) ** 2 * shape
+    return means[k] * 1.0, classes[number] + own
+
+
+def densities(records, defect):
+    """ln of the weight of each class times the density, without a signal and with each."""
+    told = np.ones(4) if defect == "weights_left_out" else weights.copy()
+    told[3] *= 1e-12 if defect == "class_forgotten" else 1
+    modes = slice(0, 5 if defect == "one_mode_short" else 6)
+    level = np.full(len(records), noise)
+    if defect == "noise_from_the_misfit":
+        level = np.mean(records**2, axis=1)
+    if defect == "one_mode_short":
+        level = 0.9 * noise + 0.1 * records[:, 5] ** 2
+    found = np.empty((4, 5, len(records)))
+    for number in range(4):
+        for k in range(-1, 4):
+            mean, covariance = law(number, k, 0 if defect == "amplitude_fixed" else 0.4)
+            values, vectors = np.linalg.eigh(covariance[modes, modes])
+            turned, variances = (records - mean)[:, modes] @ vectors, values + level[:, None]
+            density = -np.sum(turned**2 / variances + np.log(variances), axis=1) / 2
+            found[number, k + 1] = np.log(told[number] / told.sum()) + density
+    if defect == "weights_under_one_hypothesis":
+        found[:, 0] += np.log(weights.sum())
+    return found
+
+
+def told_cells(kind, records, defect):
+    found = densities(records, defect)
+    mixed = found[:, 1:] + np.log(shares)[:, None]
+    none, any_signal = found[:, 0] + np.log(1 - prior_h1), logsumexp(mixed, axis=1) + np.log(prior_h1)
+    if kind == "inclusion":
+        return np.array([logsumexp(none, axis=0), logsumexp(any_signal, axis=0)])
+    return np.concatenate([none, any_signal]) if kind == "classes" else logsumexp(mixed, axis=0)
+
+
+def odds_power(kind, defect):
+    scores = {"inclusion": [0, 1], "classes": [1, 0, 0, 0] * 2, "signals": [0, 1 / 3, 2 / 3, 1]}[kind]
+    moments = np.zeros((4, 2))
+    for number in range(4):
+        for k in range(0 if kind == "signals" else -1, 4):
+            there = 1 if kind == "signals" else prior_h1
+            probability = weights[number] / weights.sum() * (1 - prior_h1 if k < 0 else there * shares[k])
+            mean, covariance = law(number, k)
+            records = mean + points @ np.linalg.cholesky(covariance + noise * np.eye(6)).T
+            cells = told_cells(kind, records, defect)
+            truth = {"inclusion": int(k >= 0), "classes": number + 4 * (k >= 0), "signals": k}[kind]
+            share = lambda logs: (logs - logsumexp(logs, axis=0))[truth]
+            for bet, (power, tilt) in enumerate([(0.7, 0), (1.4, 0), (1, -0.5), (1, 0.5)]):
+                gain = share(power * cells + tilt * np.array(scores)[:, None]) - share(cells)
+                moments[bet] += probability * np.array([np.mean(gain), np.mean(gain**2)])
+    mean, sd = moments[:, 0], np.sqrt(moments[:, 1] - moments[:, 0] ** 2)
+    return np.max(norm.sf((math.log(4 / ALPHA) - TRIALS * mean) / (math.sqrt(TRIALS) * sd)))
+
+
+for kind, defects in [
+    ("inclusion", ["class_forgotten", "weights_under_one_hypothesis", "noise_from_the_misfit"]),
+    ("classes", ["class_forgotten", "weights_left_out"]),
+    ("signals", ["noise_from_the_misfit", "amplitude_fixed", "one_mode_short"]),
+]:
+    line(f"robust_posterior_of_{kind}", TRIALS, **{defect: odds_power(kind, defect) for defect in defects})
