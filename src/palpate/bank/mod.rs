@@ -40,8 +40,9 @@ pub use plan::{BankPlan, BankSolve, MESH_SIZE};
 pub use rates::{
     CONFIDENCE, CalibratedThreshold, RareRate, false_alarm_bound, false_alarm_threshold,
 };
-pub use reach::{Reach, Reached, deepest, smallest_diameters};
+pub use reach::{BesideClass, Reach, Reached, deepest, smallest_diameters};
 
+use crate::decimal::mm;
 use crate::force_map::{ForceMap, SAME_POSITION, check_gel, increasing};
 use crate::phantom::{Inclusion, Phantom, Shape};
 use crate::refusal::Refusal;
@@ -83,7 +84,13 @@ impl Parameter {
             (Parameter::Depth, _) => inclusion.depth,
             (Parameter::Diameter, Shape::Disc { diameter }) => *diameter,
             (Parameter::Diameter, _) => {
-                let [left, right, ..] = inclusion.extent();
+                // At 0: elsewhere rounding gives each position a width of its own.
+                let centre_x = 0.0;
+                let [left, right, ..] = Inclusion {
+                    centre_x,
+                    ..inclusion.clone()
+                }
+                .extent();
                 right - left
             }
             (Parameter::Modulus, _) => inclusion.material.youngs_modulus,
@@ -158,6 +165,18 @@ impl Bank {
     /// The depth of the probe, m.
     pub fn depth(&self) -> f64 {
         self.depth
+    }
+
+    /// Checks that the bank has the forces at this depth of the probe, m.
+    ///
+    /// # Errors
+    /// Another depth, with that of the bank.
+    pub fn check_depth(&self, depth: f64) -> Result<(), Refusal> {
+        let is_other = (depth - self.depth).abs() > SAME_POSITION;
+        let [given, own] = [depth, self.depth].map(mm);
+        let found = format!("the bank is for a depth of {own} mm, not {given} mm");
+        let remedy = format!("give {own}, or another bank");
+        Refusal::state(found, remedy).when(is_other)
     }
 
     /// The values of each of [`Parameter::ALL`], increasing, m or Pa.

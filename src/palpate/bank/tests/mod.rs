@@ -28,6 +28,38 @@ pub fn times(factor: f64, values: &[f64]) -> Vec<f64> {
     values.iter().map(|value| factor * value).collect()
 }
 
+// The width of an ellipse turned by 30°, 2 √(3² cos² + 1.5² sin²) mm.
+// Verifies: BNK-001.
+#[test]
+fn a_width_is_the_same_at_every_position() {
+    let ellipse = Shape::Ellipse {
+        width: 6e-3,
+        height: 3e-3,
+        angle_deg: 30.0,
+    };
+    let points = vec![[-1.1e-3, 0.0], [1.3e-3, 0.0], [0.0, 2e-3]];
+    let shapes = [
+        (ellipse, 5.408_326_913_195_984e-3),
+        (Shape::Polygon { points }, 2.4e-3),
+    ];
+    for (shape, expected) in shapes {
+        let width = |x: i32| {
+            let phantom = Phantom::builtin("6.6").unwrap().changed(|parts| {
+                parts.inclusions[0].shape = shape.clone();
+                parts.inclusions[0].centre_x = f64::from(x) * 1e-4;
+            });
+            Parameter::Diameter.of(&phantom.unwrap().inclusions()[0])
+        };
+        // A few roundings.
+        assert!(
+            (width(0) - expected).abs() < 1e-17,
+            "{} {expected}",
+            width(0)
+        );
+        assert!((-40..=40).all(|x| width(x) == width(0)));
+    }
+}
+
 /// A record of white noise about `mean`.
 pub fn noisy(seed: u64, trial: u64, mean: &[f64]) -> Vec<f64> {
     let mut record = vec![0.0; mean.len()];
