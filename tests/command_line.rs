@@ -113,7 +113,7 @@ fn the_statistics_battery_traverses_these_force_maps() {
     }
 }
 
-// Verifies: CLI-015.
+// Verifies: CLI-015, CLI-003.
 #[test]
 fn large_strain_is_warned_of() {
     let here = Place::new("warning");
@@ -125,8 +125,15 @@ fn large_strain_is_warned_of() {
     let warning = solve("4.25");
     assert_has(&warning, "warning: phantom 2.6|depth 4.25 mm");
     assert!(!warning.contains("inside out"), "{warning}");
-    let warning = solve("9");
-    assert!(warning.contains("inside out"), "{warning}");
+    let turned = "solve --phantom 2.6 --laterals-mm 0 --mesh-mm 2 --depths-mm 9";
+    let output = here.run(turned);
+    assert_eq!(output.status.code(), Some(4));
+    assert_has(
+        text(&output.stderr),
+        "palpate: phantom 2.6|inside out there",
+    );
+    // The forces are written all the same.
+    assert_has(text(&output.stdout), "9.0");
 }
 
 // Verifies: CLI-003.

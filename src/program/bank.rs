@@ -12,7 +12,7 @@ use super::error::refuse;
 use super::numbers::{List, contact, length, moduli, positions};
 use super::output::{Envelope, write};
 use super::progress::{resumed_bar, tell_large_mesh};
-use super::solve::{phantom, warn_of_large_strain_of};
+use super::solve::{phantom, tell_large_strain};
 use palpate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
 use palpate::decimal::{kpa, mm};
 use palpate::fem::{Contact, arithmetic};
@@ -114,12 +114,13 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     bar.finish_and_clear();
     let det = |map: &ForceMap| map.certificate().map_or(1.0, |of| of.smallest_det.det);
     let worst = maps.iter().min_by(|a, b| det(a).total_cmp(&det(b)));
-    if let Some(map) = worst {
-        warn_of_large_strain_of(map, &name(phantom.name(), map.phantom()));
-    }
+    let strain = worst.map_or(Ok(()), |map| {
+        tell_large_strain(map, &name(phantom.name(), map.phantom()))
+    });
     let reference = maps.remove(0);
     write(out, &Bank::new(reference, maps)?.to_json())?;
-    Ok(part.remove()?)
+    part.remove()?;
+    strain
 }
 
 /// How the first line of a FILE.part begins.

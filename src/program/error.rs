@@ -20,6 +20,8 @@ pub enum CliError {
     Check(String),
     /// A record cannot be judged.
     Unjudged(String),
+    /// Forces were written that mean nothing.
+    Meaningless(String),
 }
 
 /// Returns that the command line, a file or a device is to blame, in the words of a `format!`.
@@ -33,9 +35,10 @@ pub(crate) use refuse;
 impl Display for CliError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            CliError::Usage(message) | CliError::Check(message) | CliError::Unjudged(message) => {
-                f.write_str(message)
-            }
+            CliError::Usage(message)
+            | CliError::Check(message)
+            | CliError::Unjudged(message)
+            | CliError::Meaningless(message) => f.write_str(message),
             CliError::Refused(refusal) => refusal.fmt(f),
         }
     }
@@ -88,12 +91,13 @@ impl CliError {
         CliError::Usage(one_line(&format!("{message}{tip}; see --help")))
     }
 
-    /// 1 if a computation failed, 2 if the input is to blame, 3 if a record cannot be judged.
+    /// 1 if a computation failed, 2 if the input is to blame, 3 if a record cannot be judged, 4 if forces mean nothing.
     pub fn exit_code(&self) -> u8 {
         match self {
             CliError::Check(_) => 1,
             CliError::Usage(_) | CliError::Refused(_) => 2,
             CliError::Unjudged(_) => 3,
+            CliError::Meaningless(_) => 4,
         }
     }
 }

@@ -10,13 +10,15 @@ use super::CliError;
 use super::config::Config;
 use super::output::{make_folder, print, write};
 use super::progress::{bar, tell_large_mesh};
-use super::solve::warn_of_large_strain;
+use super::solve::tell_large_strain;
 use palpate::fem::certify::certified_map;
 use palpate::fem::{FemError, Model, Pose};
 use palpate::file::read;
 use palpate::force_map::ForceMap;
 use palpate::phantom::{Inclusion, Phantom};
 use palpate::refusal::Refusal;
+use palpate::robust::{GelChanges, GelUncertainty};
+use palpate_paper::psychophysics::bridge::probe_depth;
 use palpate_paper::report::{DeformedMesh, FileNames, Run, figures, findings, html, summary_json};
 use palpate_paper::study::StudyResults;
 
@@ -51,16 +53,25 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     // The folder first: a run shall not fail at its end because it cannot be made.
     make_folder(&arguments.out)?;
     let (mut maps, deformed) = solve_all(&config, &phantoms)?;
+    let reference = maps.remove(0);
+    let (depth, _) = probe_depth(reference.table().depths());
+    let changes = GelChanges::new(&reference, depth, &GelUncertainty::default());
     let run = Run {
-        reference: maps.remove(0),
+        changes: changes.map_err(CliError::fem(phantoms[0].name()))?,
+        reference,
         maps,
         measured,
         deformed,
         settings: config.detection,
         study,
     };
-    run.reference_and_maps().for_each(warn_of_large_strain);
-    write_run(&run, &arguments.out)
+    let name = |map: &ForceMap| map.phantom().map_or("", Phantom::name).to_string();
+    let strains = run.reference_and_maps();
+    let strains: Vec<_> = strains
+        .map(|map| tell_large_strain(map, &name(map)))
+        .collect();
+    write_run(&run, &arguments.out)?;
+    strains.into_iter().collect()
 }
 
 /// Reads a measured map.

@@ -100,43 +100,44 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         let solution = model.solve(pose).map_err(&failed)?;
         write(path, &model.vtu(&solution).map_err(&failed)?)?;
     }
-    warn_of_large_strain(&map);
+    let strain = tell_large_strain(&map, phantom.name());
     print(&match arguments.format {
         // Writing to a String does not fail.
         MapFormat::Table => Table { map: &map }.render().unwrap_or_default(),
         MapFormat::Json => map.to_json(),
         MapFormat::Csv => map.table().to_csv(),
-    })
+    })?;
+    strain
 }
 
-/// Warns on standard error where the strain is too large for the model.
+/// Warns on standard error where the strain of `phantom` is too large for the model.
 ///
-/// Implements: CLI-015.
-pub fn warn_of_large_strain(map: &ForceMap) {
-    let name = map.phantom().map_or("", |phantom| phantom.name());
-    warn_of_large_strain_of(map, name);
-}
-
-/// The same, with the name of the phantom.
-pub fn warn_of_large_strain_of(map: &ForceMap, name: &str) {
-    let smallest = map.certificate().map(|of| of.smallest_det);
-    if let Some(SmallestDet {
+/// # Errors
+/// The gel is turned inside out: whoever wrote the map ends with that.
+///
+/// Implements: CLI-015, CLI-003.
+pub fn tell_large_strain(map: &ForceMap, phantom: &str) -> Result<(), CliError> {
+    let Some(certificate) = map.certificate() else {
+        return Ok(());
+    };
+    let SmallestDet {
         det,
         depth,
         lateral,
-    }) = smallest
-        && det < SMALL_STRAIN_LIMIT
-    {
-        let meaning = if det > 0.0 {
-            "the small-strain model is at its limit there"
-        } else {
-            "the gel is turned inside out there, and the forces are meaningless"
-        };
-        let (depth, lateral) = (mm(depth), mm(lateral));
-        eprintln!(
-            "palpate: warning: phantom {name}: det(I + grad u) falls to {det:.3} at depth {depth} mm, lateral {lateral} mm: {meaning}"
-        );
+    } = certificate.smallest_det;
+    let (depth, lateral) = (mm(depth), mm(lateral));
+    let found = format!(
+        "phantom {phantom}: det(I + grad u) falls to {det:.3} at depth {depth} mm, lateral {lateral} mm"
+    );
+    if det <= 0.0 {
+        return Err(CliError::Meaningless(format!(
+            "{found}: the gel is turned inside out there, and the forces are meaningless; try smaller depths"
+        )));
     }
+    if det < SMALL_STRAIN_LIMIT {
+        eprintln!("palpate: warning: {found}: the small-strain model is at its limit there");
+    }
+    Ok(())
 }
 
 /// The map for people.
