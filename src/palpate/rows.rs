@@ -9,7 +9,7 @@ use crate::detect::nuisance::{SubspaceTest, Threshold};
 use crate::force::Force;
 use crate::force_map::SAME_POSITION;
 use crate::refusal::Refusal;
-use crate::robust::{RobustAnswer, RobustPlace};
+use crate::robust::{Class, PlaceInterval, RobustAnswer, RobustPlace};
 use crate::trace::{Cause, Fit, Judgement};
 
 /// The probability of the interval of each parameter of an inclusion.
@@ -163,12 +163,16 @@ impl RobustAnswer {
         numbers! { rows;
             posterior_h1: "posterior P(inclusion)", is_compared.then_some(self.posterior);
             theta: "theta (log-likelihood ratio)", is_compared.then_some(self.theta);
+            false_alarm: "P(false alarm), worst class", self.rates.map(|rates| rates.false_alarm);
+            miss: "P(miss), worst class", self.rates.map(|rates| rates.miss);
         }
         for (hypothesis, key, label) in [
             (0, "class_without", "without inclusion, as if"),
             (1, "class_with", "with an inclusion, as if"),
         ] {
-            if let Some((name, share)) = self.likeliest_class(hypothesis) {
+            if let Some(class) = self.likeliest_class(hypothesis) {
+                let (Class { name, .. }, shares) = self.classes[class];
+                let share = shares[hypothesis];
                 let text = format!("{name} ({:.0} %)", 100.0 * share);
                 rows.shown(
                     key,
@@ -177,6 +181,10 @@ impl RobustAnswer {
                     text,
                 );
             }
+        }
+        let without = self.likeliest_class(0).filter(|_| is_weak);
+        if let Some(remedy) = without.map(|class| self.classes[class].0.remedy()) {
+            rows.shown("remedy", "what would help", remedy, remedy);
         }
         if let Some((bank, place)) = place.filter(|_| is_compared) {
             let (key, deepest) = ("no_inclusion_down_to_m", place.none_down_to);
@@ -205,15 +213,6 @@ impl RobustAnswer {
         rows.value("glitches", json!(self.glitches));
         rows
     }
-
-    /// The likeliest class without (0) or with (1) an inclusion, and its probability.
-    fn likeliest_class(&self, hypothesis: usize) -> Option<(&'static str, f64)> {
-        let classes = self
-            .classes
-            .iter()
-            .map(|(name, shares)| (*name, shares[hypothesis]));
-        classes.max_by(|a, b| a.1.total_cmp(&b.1))
-    }
 }
 
 /// The interval of each parameter that the bank varies.
@@ -224,13 +223,8 @@ fn place_rows(bank: &Bank, place: &RobustPlace, rows: &mut Rows) {
         };
         let (key, scale, label) = parameter_row(parameter);
         let shown = |x: f64| format!("{:.3}", scale * x);
-        let range = match [interval.lower, interval.upper].map(|end| end.map(shown)) {
-            [Some(low), Some(high)] => format!("{low} to {high}"),
-            [Some(low), None] => format!("from {low}"),
-            [None, Some(high)] => format!("up to {high}"),
-            [None, None] => "wider than the bank".into(),
-        };
-        let text = format!("{}, 95 % interval {range}", shown(interval.estimate));
+        let (estimate, range) = (shown(interval.estimate), interval.in_words(shown));
+        let text = format!("{estimate}, 95 % interval {range}");
         let ends = [interval.lower, interval.upper];
         let value =
             json!({"estimate": interval.estimate, "interval": ends, "unit": parameter.unit()});
@@ -325,16 +319,22 @@ impl Location {
             };
             let (key, scale, label) = parameter_row(parameter);
             let estimate = self.place.estimate[axis];
-            let interval = self.place.interval(axis, CREDIBLE)?;
+            let bounds = self.place.interval(axis, CREDIBLE)?;
+            // Where the likelihood still rises at an end of the bank, that is no end of the interval.
+            let is_within = |end: f64| (end - estimate).abs() > SAME_POSITION;
+            let interval = PlaceInterval {
+                estimate,
+                lower: is_within(first).then_some(bounds.lower),
+                upper: is_within(last).then_some(bounds.upper),
+            };
             let ends = [interval.lower, interval.upper];
             let value = json!({"estimate": estimate, "mean": mean[axis], "interval": ends, "sd_bound": sd, "unit": parameter.unit()});
             let shown = |x: f64| format!("{:.3}", scale * x);
-            let [low, high] = ends.map(shown);
+            let range = interval.in_words(shown);
             let sd = sd.map_or("unknown".into(), |sd| format!("at least {}", shown(sd)));
-            let mut text = shown(estimate) + &format!(", 95 % interval {low} to {high}, sd {sd}");
-            let is_end = |end: &f64| (end - estimate).abs() <= SAME_POSITION;
-            if [first, last].iter().any(is_end) {
-                text += "; at an end of the bank, may lie beyond";
+            let mut text = shown(estimate) + &format!(", 95 % interval {range}, sd {sd}");
+            if ends.contains(&None) {
+                text += "; the bank ends there";
             }
             rows.shown(key, label, value, text);
         }

@@ -45,7 +45,9 @@ fn the_bank_finds_an_inclusion_that_was_moved() {
         let [estimate, sd] = ["estimate", "sd_bound"].map(|key| number(of, key));
         assert!((estimate - truth).abs() < 4.0 * sd, "{key}: {of}");
         assert!(sd > 1e-6 && sd < 1e-3, "{key}: {of}");
-        let [low, high] = [0, 1].map(|end: usize| of["interval"][end].as_f64().unwrap());
+        // The truth is at an end of the bank's depths.
+        let ends = [0, 1].map(|end: usize| of["interval"][end].as_f64());
+        let (low, high) = (ends[0].unwrap_or(0.0), ends[1].unwrap_or(1.0));
         let holds = low < high && low - sd < truth && truth < high + sd;
         assert!(holds, "{key}: {of}");
         assert_eq!(of["unit"], "m");
@@ -122,4 +124,27 @@ fn a_figure_shows_where_the_inclusion_lies() {
     }
     let holds = !figure.contains("iameter") && !figure.contains("odulus");
     assert!(holds, "{figure}");
+}
+
+// Verifies: CLI-153.
+#[test]
+fn an_interval_is_open_where_the_bank_ends() {
+    let poses = "--depths-mm 2,3 --laterals-mm=-8:8:0.5 --mesh-mm 2 --format json";
+    let solved = place().succeed(&format!("solve --phantom 6.6 {poses}"));
+    place().write("deeper.json", solved);
+    let deeper = ForceMap::read(&place().at("deeper.json")).unwrap();
+    write_trace(place(), "deeper.csv", &sweep(deeper.table()), 5);
+    // The bank has depths of 2.6 and 3.6 mm.
+    let asked = "detect deeper.csv --model exact --bank bank.json --noise-sd-n 0.05";
+    let output = place().run(&format!(
+        "{asked} --known offset,drift,gain,depth,variance --format json"
+    ));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let depth = &found["inclusion_depth"];
+    assert_eq!(depth["estimate"], 3.6e-3, "{found}");
+    assert_eq!(depth["interval"][1], Value::Null);
+    assert!(depth["interval"][0].as_f64().unwrap() < 3.6e-3);
+    let table = place().run(&format!("{asked} --known offset,drift,gain,depth,variance"));
+    let table = text(&table.stdout).to_string();
+    assert_has(&table, "3.600, 95 % interval from |; the bank ends there");
 }
