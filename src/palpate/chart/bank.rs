@@ -23,7 +23,7 @@ const LEVEL: f64 = 0.95;
 const TOUCHING: f64 = 1e-12;
 
 /// What one axis of a bank shows: words, unit, and how many of the unit are one in SI.
-fn words(parameter: Parameter) -> (&'static str, &'static str, f64) {
+pub fn words(parameter: Parameter) -> (&'static str, &'static str, f64) {
     match parameter {
         Parameter::Position => ("Position x of the inclusion", "mm", 1e3),
         Parameter::Depth => ("Depth of the inclusion", "mm", 1e3),
@@ -112,23 +112,39 @@ fn marginal(
         (low.min(estimate) - aside).max(first),
         (high.max(estimate) + aside).min(last),
     ];
-    let shown = outline(&bars, x);
-    let y = round_range(shown.iter().map(|point| point.1));
-    let area = Line::area(REGIONS[0].1, outline(&bars, [low, high]));
-    let estimated = Line::new(VERMILION, vec![(estimate, 0.0), (estimate, y[1])]).dashed(true);
+    let values = [low, high, estimate];
     let [estimate, low, high] = [estimate, low, high].map(|x| trimmed(x, 3));
-    let lines = vec![
-        area.named(format!("95 %: {low} to {high}")),
-        Line::new(INK, shown),
-        estimated.named(format!("likeliest: {estimate}")),
+    let names = [
+        format!("95 %: {low} to {high}"),
+        format!("likeliest: {estimate}"),
     ];
     let panel = Panel {
         x_name: format!("{name} ({unit})"),
-        ..Panel::new(format!("Probability density (1/{per})"), [x, y], 150, lines)
+        heading: format!("Probability density (1/{per})"),
+        ..posterior(&bars, x, values, names)
     };
     let words =
         format!("{name}: {estimate} {unit}, with 95 % probability from {low} to {high} {unit}");
     Ok((panel, words))
+}
+
+/// Bars, each from end to end with its height, between two places: those of an interval filled, and an estimate; both with their names.
+pub fn posterior(
+    bars: &[([f64; 2], f64)],
+    x: [f64; 2],
+    [low, high, estimate]: [f64; 3],
+    [interval, estimated]: [String; 2],
+) -> Panel {
+    let shown = outline(bars, x);
+    let y = round_range(shown.iter().map(|point| point.1));
+    let area = Line::area(REGIONS[0].1, outline(bars, [low, high]));
+    let line = Line::new(VERMILION, vec![(estimate, 0.0), (estimate, y[1])]).dashed(true);
+    let lines = vec![
+        area.named(interval),
+        Line::new(INK, shown),
+        line.named(estimated),
+    ];
+    Panel::new("", [x, y], 150, lines)
 }
 
 /// The outline of bars, each from end to end with its height, between two places: 0 where there is none.

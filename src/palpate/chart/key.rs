@@ -7,8 +7,8 @@ use plotters::style::text_anchor::HPos;
 use super::panel::{Area, DrawingResult, LEFT, Line, Panel, PanelKind, write};
 use super::style::{INK, UNIT, WIDTH, stroke, text_width};
 
-/// Height of a row, pixels.
-const ROW: i32 = 22;
+/// Height of a row of text, pixels.
+pub const ROW: i32 = 22;
 /// Length of a sample, pixels.
 const SAMPLE: i32 = 26;
 /// Most named lines that have an entry.

@@ -4,7 +4,7 @@ use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
-use super::key::{draw_key, key_height};
+use super::key::{ROW, draw_key, key_height};
 use super::panel::{
     Area, Cells, Context, DrawingResult, LEFT, Line, Panel, PanelKind, RIGHT, write,
 };
@@ -67,10 +67,33 @@ impl Panel {
         names.max().map_or(RIGHT, |widest| INDENT + widest + 8)
     }
 
-    /// Pixels from the top of its heading to the bottom of the name of its x axis.
+    /// Pixels from its top to the top of its heading.
+    fn caption_height(&self) -> i32 {
+        self.caption_lines().len() as i32 * ROW
+    }
+
+    /// The caption in lines as wide as the figure.
+    fn caption_lines(&self) -> Vec<String> {
+        let mut lines: Vec<String> = Vec::new();
+        for sentence in &self.caption {
+            lines.push(String::new());
+            for word in sentence.split(' ') {
+                let line = lines.last().map_or("", |line| line);
+                let longer = format!("{line} {word}");
+                match lines.last_mut() {
+                    Some(line) if text_width(&longer) <= WIDTH => *line = longer,
+                    _ => lines.push(format!(" {word}")),
+                }
+            }
+        }
+        lines
+    }
+
+    /// Pixels from its top to the bottom of the name of its x axis.
     fn whole_height(&self) -> i32 {
         let footing = if self.x_name.is_empty() { 0 } else { FOOTING };
-        HEADING + key_height(self) + self.height + NUMBERS + footing
+        let above = self.caption_height() + HEADING + key_height(self);
+        above + self.height + NUMBERS + footing
     }
 }
 
@@ -110,6 +133,15 @@ fn drawn(panels: &[Panel]) -> DrawingResult<(String, i32)> {
 
 /// Draws a panel but for its cells, and gives those as paths.
 fn draw_panel(area: &Area<'_>, panel: &Panel, top: i32, right: i32) -> DrawingResult<String> {
+    for (row, line) in (0..).zip(panel.caption_lines()) {
+        write(
+            area,
+            line.trim_start(),
+            [8, top + ROW * row + ROW / 2 + 6],
+            HPos::Left,
+        )?;
+    }
+    let top = top + panel.caption_height();
     write(area, &panel.heading, [8, top + 22], HPos::Left)?;
     let plot = top + HEADING + key_height(panel);
     let mut chart = axes(area, panel, plot, right)?;

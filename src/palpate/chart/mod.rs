@@ -1,13 +1,15 @@
-//! Line charts as SVG, and the two that `palpate detect` and `palpate reach` draw.
+//! Line charts as SVG, and those that `palpate detect` and `palpate reach` draw.
 //!
 //! | file | content |
 //! |---|---|
 //! | `bank.rs`, `reach.rs` | where an inclusion lies by a bank, and how deep one can be found |
+//! | `explanation.rs` | a record beside what explains it |
 //! | `panel.rs` | what a chart is made of |
 //! | `lines.rs` | how panels are drawn |
 //! | `key.rs`, `style.rs` | the key above a plot; sizes and colours |
 
 mod bank;
+mod explanation;
 mod key;
 mod lines;
 mod panel;
@@ -15,6 +17,7 @@ mod reach;
 pub mod style;
 
 pub use bank::place_figure;
+pub use explanation::{answer_in_words, explanation_figure, record_panel};
 pub use lines::{chart, round_range};
 pub use panel::{Cells, Line, Panel, PanelKind};
 pub use reach::reach_figure;

@@ -116,6 +116,8 @@ pub enum PanelKind {
 /// One plot.
 #[derive(Default)]
 pub struct Panel {
+    /// Sentences above everything else.
+    pub caption: Vec<String>,
     /// What the y axis shows, with its unit.
     pub heading: String,
     /// What the x axis shows, with its unit; empty where a panel below has the same axis.
