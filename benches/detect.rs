@@ -8,9 +8,14 @@
 
 use palpate::detect::nuisance::{Nuisances, SubspaceDetector};
 use palpate::detect::simulate::Simulation;
-use palpate::detect::{DetectError, MatchedFilter};
+use palpate::detect::{Decision, DetectError, MatchedFilter};
 use palpate::force::Force;
+use palpate::force_map::{ForceTable, Matrix};
+use palpate::refusal::Refusal;
+use palpate::robust::{AMPLITUDE, RobustDetector, RobustQuestion, RobustSignal, RobustSweep};
 use palpate::stats::random::Generator;
+use palpate::trace::Record;
+use std::error::Error;
 use std::time::Instant;
 
 /// Samples a channel.
@@ -39,7 +44,68 @@ fn rate(items: f64, mut run: impl FnMut() -> Result<f64, DetectError>) -> Result
     Ok(best)
 }
 
-fn main() -> Result<(), DetectError> {
+fn main() -> Result<(), Box<dyn Error>> {
+    exact()?;
+    for hypotheses in [131, 2000] {
+        robust(hypotheses)?;
+    }
+    Ok(())
+}
+
+/// What a record costs with the robust model: once for all records over the same positions, and each.
+fn robust(hypotheses: usize) -> Result<(), Refusal> {
+    let laterals: Vec<f64> = (0..SAMPLES).map(|i| i as f64 * 40e-6 - 8e-3).collect();
+    let of = |channel: Vec<f64>| Matrix::from_fn(1, SAMPLES, |_, i| channel[i]);
+    let flat = ForceTable::new(vec![4e-3], laterals.clone(), force(0.0).map(of))?;
+    let mut noise = vec![0.0; 2 * SAMPLES];
+    Generator::new(2026, 0).normals(0, 0, &mut noise);
+    let Force { lateral, normal } = force(0.34);
+    let noisy = |channel: Vec<f64>, noise: &[f64]| -> Vec<f64> {
+        channel
+            .iter()
+            .zip(noise)
+            .map(|(f, n)| f + 0.1 * n)
+            .collect()
+    };
+    let lateral = noisy(lateral, &noise[..SAMPLES]);
+    let normal = noisy(normal, &noise[SAMPLES..]);
+    let record = Record::new("record", &laterals, Force::new(&lateral, &normal))?;
+    let signal = |number: usize| {
+        let Force { lateral, normal } = force(0.5 * (number + 1) as f64 / hypotheses as f64);
+        let normal: Vec<f64> = normal.iter().map(|f| f - 1.5).collect();
+        RobustSignal {
+            of_sweeps: vec![[lateral, normal].concat()],
+            amplitude_sd: AMPLITUDE,
+            prior: 1.0 / hypotheses as f64,
+        }
+    };
+    let signals: Vec<_> = (0..hypotheses).map(signal).collect();
+    let question = RobustQuestion::default();
+    let sweep = RobustSweep {
+        record: &record,
+        depth: 4e-3,
+        changes: None,
+        is_reference: false,
+    };
+    let detector = RobustDetector::new(question, &flat, &[sweep], &signals)?;
+    let mut best = [f64::INFINITY; 2];
+    for _ in 0..15 {
+        let start = Instant::now();
+        std::hint::black_box(RobustDetector::new(question, &flat, &[sweep], &signals)?);
+        best[0] = best[0].min(1e3 * start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        let answer = detector.judge(&[record.forces()])?;
+        best[1] = best[1].min(1e3 * start.elapsed().as_secs_f64());
+        assert_eq!(answer.decision, Some(Decision::Inclusion));
+    }
+    let [once, each] = best;
+    println!(
+        "robust, {hypotheses} hypotheses: {once:.1} ms for the positions, {each:.1} ms a record"
+    );
+    Ok(())
+}
+
+fn exact() -> Result<(), DetectError> {
     let (f0, f1) = (force(0.0), force(0.34));
     let pairs = f0.as_ref().zip(f1.as_ref());
     let template =

@@ -91,6 +91,12 @@ pub fn newtons(text: &str) -> Result<f64, String> {
     number(text, 0, |force| force > 0.0, must_be)
 }
 
+/// Reads a probability from which something is sure.
+pub fn sure_probability(text: &str) -> Result<f64, String> {
+    let is_right = |p: f64| p > 0.5 && p < 1.0;
+    number(text, 0, is_right, "a probability above 0.5 and below 1")
+}
+
 /// Reads a probability strictly between 0 and 1.
 pub fn probability(text: &str) -> Result<f64, String> {
     let is_right = |share| share > 0.0 && share < 1.0;

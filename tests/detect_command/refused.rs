@@ -8,6 +8,8 @@ fn bad_arguments_are_refused_in_one_line() {
     place().refuses("detect", |words| {
         format!("detect --model exact with.csv {MAPS} {words}")
     });
+    place().write("wrong.toml", "height_percent = -1");
+    place().write("unknown.toml", "height_mm = 1");
     place().refuses("detect robust", |words| {
         format!("detect {} --depth-mm 3", words.replace("MAPS", MAPS))
     });

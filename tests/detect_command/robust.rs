@@ -1,8 +1,11 @@
 //! The robust model, which is the default, end to end.
 
-use super::{MAPS, place, write_trace};
+use super::{MAPS, maps, place, sweep, write_trace};
 use crate::program::text;
+use palpate::file::from_toml;
 use palpate::force_map::ForceMap;
+use palpate::robust::GelUncertainty;
+use palpate_asserts::assert_has;
 use serde_json::{Value, json};
 
 /// The answer in JSON and the code of the end.
@@ -93,7 +96,7 @@ fn the_robust_model_is_the_default_and_has_three_answers() {
     assert_eq!(both, theta("with.csv disturbed.csv --together", "3,3"));
 }
 
-// Verifies: ROB-041, ROB-042.
+// Verifies: ROB-041, ROB-042, CLI-140.
 #[test]
 fn a_bank_tells_where_and_down_to_which_depth_there_is_none() {
     let known = "--known gel,support,surface,stage,tilt,friction,relaxation,walk,smooth";
@@ -115,4 +118,149 @@ fn a_bank_tells_where_and_down_to_which_depth_there_is_none() {
     ));
     assert_eq!(found["decision"], "no_inclusion", "{found}");
     assert_eq!(found["no_inclusion_down_to_m"], 3.6e-3);
+    let other = place().run("detect moved.csv --bank bank.json --depth-mm 2");
+    assert_eq!(other.status.code(), Some(2));
+    assert_has(
+        text(&other.stderr),
+        "the bank is for a depth of 3.0 mm, not 2.0 mm; give 3.0, or another bank",
+    );
+}
+
+// Verifies: CLI-163, ROB-044.
+#[test]
+fn a_figure_shows_the_record_beside_what_explains_it() {
+    let [_, inclusion] = maps(place());
+    let mut spiked = sweep(inclusion.table());
+    spiked[16][2] += 50.0;
+    write_trace(place(), "spiked.csv", &spiked, 10);
+    let turned = sweep(inclusion.table());
+    let turned: Vec<_> = turned.iter().map(|[x, l, n]| [*x, -l, -n]).collect();
+    write_trace(place(), "negative.csv", &turned, 10);
+    let figure = |arguments: &str| {
+        let (found, _) = answer(&format!("{arguments} --figure explained.svg"));
+        (found, place().read("explained.svg"))
+    };
+    let holds = |figure: &str, words: &str| {
+        for words in words.split('|') {
+            assert_has(figure, &format!(">\n{words}\n<"));
+        }
+    };
+    let (found, both) = figure(&format!(
+        "with.csv spiked.csv {MAPS} --depth-mm 3 --together"
+    ));
+    assert_eq!(found["glitches"], json!([0, 1]), "{found}");
+    holds(
+        &both,
+        "Normal force, sweep 1 (N)|Lateral force, sweep 2 (N)|record|left out as a glitch|without an inclusion\
+         |with an inclusion|What is left without an inclusion (N)|What is left with an inclusion (N)|Position x (mm)",
+    );
+    // 33 samples in 2 sweeps and 2 channels, as they are and over either hypothesis; 4 keys to the record and one to the glitch.
+    assert_eq!(both.matches("<circle").count(), 33 * 4 * 3 + 5);
+    let class = found["class_without"]["class"].as_str().unwrap();
+    assert_has(&both, &format!("Likeliest without an inclusion: {class} ("));
+    let (found, bank) = figure("moved.csv --bank bank.json --known gel,support,surface,stage");
+    assert_eq!(found["decision"], "inclusion", "{found}");
+    assert_has(&bank, "An inclusion. Probability of an inclusion: ");
+    holds(
+        &bank,
+        "Probability, if there is one|Position x of the inclusion (mm)|Depth of the inclusion (mm)",
+    );
+    // What is not compared is shown alone.
+    let (_, alone) = figure(&format!("negative.csv {MAPS} --depth-mm 3"));
+    assert_has(
+        &alone,
+        "It cannot be judged: the forces have the other sign",
+    );
+    assert_eq!(alone.matches("<circle").count(), 33 * 2 + 2);
+}
+
+// Verifies: ROB-020, ROB-033, ROB-046, ROB-047, ROB-002, CLI-140.
+#[test]
+fn what_is_known_of_the_gel_makes_an_answer_surer() {
+    place().write("gel.toml", "height_percent = 0\nsupport_percent = 0");
+    let known = "--depth-mm 3 --known smooth,surface,stage,tilt,friction,relaxation,walk";
+    let theta = |more: &str| {
+        let (found, _) = answer(&format!("with.csv {MAPS} {known} {more}"));
+        found["theta"].as_f64().unwrap()
+    };
+    let alone = theta("");
+    for more in [
+        "--gel-uncertainty gel.toml",
+        "--reference-sweep without.csv",
+    ] {
+        let known = theta(more);
+        assert!(known > alone + 1.0, "{more}: {known}, alone {alone}");
+    }
+    // What would help a weak record; and one glitch, which is replaced and told.
+    let rows = std::fs::read_to_string(place().at("without.csv")).unwrap();
+    let mut lines: Vec<_> = rows.lines().map(String::from).collect();
+    let middle = lines.len() / 2;
+    let cut = lines[middle].rfind(',').unwrap();
+    lines[middle].replace_range(cut.., ",9");
+    place().write("glitch.csv", lines.join("\n"));
+    let output = place().run(&format!(
+        "detect glitch.csv {MAPS} --depth-mm 3 --sure 0.999"
+    ));
+    let (told, said) = (text(&output.stdout), text(&output.stderr));
+    assert!(
+        said.contains("glitch.csv: samples replaced as glitches: 1"),
+        "{said}"
+    );
+    assert!(told.contains("what would help"), "{told}");
+    let (found, _) = answer(&format!("with.csv {MAPS} {known}"));
+    // Beside every class θ of an answer that is sure has N(∓γ²/2, γ²): at worst Q(√(2 ln 19)).
+    for rate in ["false_alarm", "miss"] {
+        let rate = found[rate].as_f64().unwrap();
+        assert!((1e-30..=0.00763).contains(&rate), "{found}");
+    }
+}
+
+// Verifies: ROB-004, ROB-020, CLI-040.
+#[test]
+fn measured_maps_need_no_phantom_and_are_seen_if_exchanged() {
+    for file in ["none", "inclusion"] {
+        let map = ForceMap::read(&place().at(&format!("{file}.json"))).unwrap();
+        let row = map.table().row(0.003).unwrap();
+        let laterals = map.table().laterals();
+        let sample = |at: usize| {
+            let (x, normal, lateral) = (1e3 * laterals[at], row.normal[at], row.lateral[at]);
+            format!("3,{x},{normal},{lateral}\n")
+        };
+        let rows: String = (0..laterals.len()).map(sample).collect();
+        let head = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n";
+        place().write(&format!("{file}.csv"), format!("{head}{rows}"));
+    }
+    let known = "--depth-mm 3 --known smooth,surface,stage,tilt,friction,relaxation,walk";
+    let maps = "--reference none.csv --inclusion inclusion.csv";
+    let (found, code) = answer(&format!("with.csv {maps} {known}"));
+    assert_eq!(
+        (&found["decision"], code),
+        (&json!("inclusion"), Some(0)),
+        "{found}"
+    );
+    let maps = "--reference inclusion.csv --inclusion none.csv";
+    let (found, _) = answer(&format!("with.csv {maps} {known}"));
+    assert_eq!(found["causes"][0], "exchanged", "{found}");
+}
+
+// Verifies: ROB-020.
+#[test]
+fn the_uncertainty_on_the_page_is_the_default() {
+    let page = std::path::Path::new(crate::ROOT).join("docs/how-to/detect.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let (block, _) = page
+        .split_once("```toml\n")
+        .unwrap()
+        .1
+        .split_once("```")
+        .unwrap();
+    assert_eq!(block.lines().count(), 7);
+    let found: GelUncertainty = from_toml(block, "page").unwrap();
+    assert_eq!(found, GelUncertainty::default());
+    // Each line counts.
+    for line in block.lines() {
+        let (key, _) = line.split_once(" = ").unwrap();
+        let found: GelUncertainty = from_toml(&format!("{key} = 0.0"), "line").unwrap();
+        assert_ne!(found, GelUncertainty::default(), "{key}");
+    }
 }

@@ -8,7 +8,7 @@ use palpate::detect::Decision;
 use palpate::fem::FemError;
 use palpate::force_map::ForceMap as Map;
 use palpate::refusal::Refusal;
-use palpate::robust::{GelChanges, Part, RobustQuestion};
+use palpate::robust::{GelChanges, GelUncertainty, Part, RobustQuestion, RobustSweep};
 use palpate::rows::CREDIBLE;
 use palpate::trace::{Correlation, Criterion, Noise, Question, Record, Unknown};
 use pyo3::prelude::*;
@@ -56,7 +56,9 @@ impl Bank {
         if let Some(known) = self.changes.get() {
             return Ok(known.as_ref());
         }
-        let found = GelChanges::new(self.bank.reference(), self.bank.depth()).map_err(refused)?;
+        let (reference, depth) = (self.bank.reference(), self.bank.depth());
+        let found = GelChanges::new(reference, depth, &GelUncertainty::default());
+        let found = found.map_err(refused)?;
         Ok(self.changes.get_or_init(|| found).as_ref())
     }
 }
@@ -260,20 +262,28 @@ impl Bank {
         let record = record(positions_mm, forces_n)?;
         let prior = prior.map(|prior| list("prior", prior, 0)).transpose()?;
         let part = |name: String| {
-            let found = Part::KNOWN.into_iter().find(|of| of.to_string() == name);
-            let names = Part::KNOWN.map(|of| of.to_string()).join(", ");
-            found.ok_or_else(|| refused(Refusal::value("known", name, format!("one of {names}"))))
+            let found = Part::known().find(|of| of.to_string() == name);
+            let names: Vec<_> = Part::known().map(|of| of.to_string()).collect();
+            let right = || format!("one of {}", names.join(", "));
+            found.ok_or_else(|| refused(Refusal::value("known", name, right())))
         };
         let known = known.into_iter().map(part).collect::<PyResult<Vec<_>>>()?;
         let question = RobustQuestion {
             known: &known,
             is_tared: zeroed,
             noise_sd: noise_sd_n.map(|sd| pair("noise_sd_n", sd)).transpose()?,
+            is_white: false,
             prior_h1,
             sure,
         };
         let found = py.detach(|| -> PyResult<_> {
-            let found = question.locate(&self.bank, prior.as_deref(), self.changes()?, &[&record]);
+            let sweep = RobustSweep {
+                record: &record,
+                depth: self.bank.depth(),
+                changes: self.changes()?,
+                is_reference: false,
+            };
+            let found = question.locate(&self.bank, prior.as_deref(), &[sweep]);
             found.map_err(refused)
         });
         let (answer, place) = found?;

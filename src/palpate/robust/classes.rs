@@ -40,6 +40,17 @@ pub enum Part {
     Walk,
 }
 
+/// Sweeps that have a part in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SharedBy {
+    /// Each sweep has its own.
+    None,
+    /// Those of one place.
+    Place,
+    /// Those of one gel.
+    Gel,
+}
+
 /// One kind of world: parts, and how large they are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Class {
@@ -119,8 +130,6 @@ const RUBS: f64 = 0.02;
 const LATERAL: f64 = 0.25;
 /// Standard deviations of the curves of stage and surface, over the radius of the probe: 0.2 mm and less.
 const CURVES: [f64; 7] = [0.031, 0.031, 0.015, 0.015, 0.0077, 0.0046, 0.0046];
-/// The standard deviation of the depth, as a share.
-const DEPTH: f64 = 0.05;
 /// Lengths after which friction from rest, and relaxation, have come to an end, over the radius of the probe.
 const FROM_REST: [f64; 3] = [0.062, 0.15, 0.46];
 const RELAXING: [f64; 3] = [0.23, 0.77, 2.5];
@@ -137,27 +146,29 @@ pub struct Undisturbed {
     pub support: Vec<Vec<f64>>,
     /// Positions in the order of time, as distances from the beginning, m.
     pub travelled: Vec<f64>,
-    /// Depth, and radius of the probe, m.
-    pub depth: f64,
+    /// The standard deviation of the depth, and the radius of the probe, m.
+    pub depth_sd: f64,
     pub radius: f64,
     /// Whether the sensor was set to zero on the gel.
     pub is_tared: bool,
 }
 
 /// A covariance between the modes of a sweep: Σ of vvᵀ over directions of known size, and a rest.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct Covariance {
     /// The directions; those of the same number in several sweeps are one, where the part is shared.
     pub vectors: Vec<DVector<f64>>,
-    /// The rest, if any.
-    pub rest: Option<DMatrix<f64>>,
+    /// The rest, which may be 0.
+    pub rest: DMatrix<f64>,
 }
 
 /// The disturbances of a sweep in its modes.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Disturbances<'a> {
     modes: &'a Modes,
     sweep: &'a Undisturbed,
+    /// The kernel of the part smooth.
+    smooth: DMatrix<f64>,
     /// The mean normal force, N.
     level: f64,
 }
@@ -194,12 +205,9 @@ impl Part {
     /// Those that can be known; their variants are known with them.
     ///
     /// Implements: ROB-050.
-    pub const KNOWN: [Part; 9] = {
-        use Part::{Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Tilt, Walk};
-        [
-            Smooth, Gel, Support, Stage, Surface, Tilt, Friction, Relaxation, Walk,
-        ]
-    };
+    pub fn known() -> impl Iterator<Item = Part> {
+        Part::ALL.into_iter().filter(|part| part.name() == *part)
+    }
 
     /// The part that a person calls known, for a variant of it.
     fn name(self) -> Part {
@@ -210,16 +218,32 @@ impl Part {
         }
     }
 
-    /// Whether it is the same in all sweeps of one place, or each has its own.
+    /// Which sweeps have it in common.
     ///
-    /// Implements: ROB-030.
-    pub fn is_shared(self) -> bool {
-        use Part::{Gel, Stage, Support, Surface, Tilt};
-        matches!(self, Gel | Support | Stage | Surface | Tilt)
+    /// Implements: ROB-030, ROB-033.
+    pub fn shared_by(self) -> SharedBy {
+        match self {
+            Part::Gel | Part::Support => SharedBy::Gel,
+            Part::Stage | Part::Surface | Part::Tilt => SharedBy::Place,
+            _ => SharedBy::None,
+        }
     }
 }
 
 impl Class {
+    /// What tells an inclusion from it.
+    ///
+    /// Implements: ROB-047.
+    pub fn remedy(&self) -> &'static str {
+        match self.parts[0].0 {
+            Part::Surface | Part::Tilt => {
+                "another sweep of the place, at 1 mm to find an inclusion, as deep as before to exclude one"
+            }
+            Part::Gel | Part::Support => "a reference sweep, or to know the gel better",
+            _ => "more sweeps of the place, or less noise",
+        }
+    }
+
     /// Its parts that are not `known`, with their sizes; none where what is left is another class.
     ///
     /// Implements: ROB-050.
@@ -240,9 +264,11 @@ impl<'a> Disturbances<'a> {
     pub fn new(modes: &'a Modes, sweep: &'a Undisturbed) -> Disturbances<'a> {
         let normal = channels(&sweep.forces).normal;
         let level = normal.iter().map(|force| force.abs()).sum::<f64>() / normal.len() as f64;
+        let smooth = kernel(modes, sweep, &SMOOTH);
         Disturbances {
             modes,
             sweep,
+            smooth,
             level,
         }
     }
@@ -258,7 +284,8 @@ impl<'a> Disturbances<'a> {
         vectors.extend(both(DRIFT, &|at| self.modes.u[at]));
         vectors.push(self.stacked(&self.sweep.forces, |_| GAIN));
         // So that a record without noise has a density too.
-        let rest = self.modes.covariance(|i, j| f64::from(i == j));
+        let count = self.modes.count();
+        let rest = DMatrix::identity(count, count);
         let rest = self.rest(&rest, ROUNDING * ROUNDING, ROUNDING * ROUNDING);
         Covariance { vectors, ..rest }
     }
@@ -269,9 +296,11 @@ impl<'a> Disturbances<'a> {
         let radius = sweep.radius;
         let normal = channels(&sweep.forces).normal;
         let faded = |at: usize, length: f64| libm::exp(-sweep.travelled[at] / (length * radius));
+        // A part without directions, such as the support of a measured gel, is nothing of the right size.
+        let modes = 2 * self.modes.count();
         let of = |vectors: Vec<DVector<f64>>| Covariance {
             vectors,
-            rest: None,
+            rest: DMatrix::zeros(modes, modes),
         };
         let all = |series: &[Vec<f64>]| {
             series
@@ -280,8 +309,8 @@ impl<'a> Disturbances<'a> {
                 .collect()
         };
         match part {
-            Part::Smooth => self.rest(&self.smooth(&SMOOTH), LATERAL, 1.0),
-            Part::Broad => self.rest(&self.smooth(&BROAD), LATERAL, 1.0),
+            Part::Smooth => self.rest(&self.smooth, LATERAL, 1.0),
+            Part::Broad => self.rest(&kernel(self.modes, sweep, &BROAD), LATERAL, 1.0),
             Part::Walk => {
                 let samples = self.modes.samples();
                 let way = |at: usize| sweep.travelled[at];
@@ -293,7 +322,7 @@ impl<'a> Disturbances<'a> {
             }
             Part::Gel => {
                 let mut vectors: Vec<_> = all(&sweep.gel);
-                vectors.push(self.stacked(&sweep.slope, |_| DEPTH * sweep.depth));
+                vectors.push(self.stacked(&sweep.slope, |_| sweep.depth_sd));
                 of(vectors)
             }
             Part::Support => of(all(&sweep.support)),
@@ -314,10 +343,10 @@ impl<'a> Disturbances<'a> {
                         self.channel(true, &|at| 0.1 * normal[at] * faded(at, length))
                     }),
                 );
-                let rubbed = self.rest(&self.smooth(&RUBBED), RUBS * RUBS, 0.0);
+                let rubbed = self.rest(&kernel(self.modes, sweep, &RUBBED), RUBS * RUBS, 0.0);
                 Covariance { vectors, ..rubbed }
             }
-            Part::UnevenFriction => self.rest(&self.smooth(&SMOOTH), 1.0, 0.0),
+            Part::UnevenFriction => self.rest(&self.smooth, 1.0, 0.0),
             Part::Relaxation => {
                 let relaxed = |length| self.stacked(&sweep.forces, |at| 0.1 * faded(at, length));
                 of(RELAXING.map(relaxed).into())
@@ -346,19 +375,6 @@ impl<'a> Disturbances<'a> {
         self.modes.of(channels(&curved))
     }
 
-    /// The mean of Gaussian kernels of these lengths, over the radius of the probe.
-    fn smooth(&self, lengths: &[f64]) -> DMatrix<f64> {
-        let lengths: Vec<f64> = lengths
-            .iter()
-            .map(|length| length * self.sweep.radius)
-            .collect();
-        self.modes.covariance(|i, j| {
-            let apart = self.sweep.travelled[i] - self.sweep.travelled[j];
-            let kernel = |length: &f64| libm::exp(-0.5 * (apart / length) * (apart / length));
-            lengths.iter().map(kernel).sum::<f64>() / lengths.len() as f64
-        })
-    }
-
     /// A covariance of both channels, over the square of the mean normal force.
     fn rest(&self, of: &DMatrix<f64>, lateral: f64, normal: f64) -> Covariance {
         let count = self.modes.count();
@@ -370,14 +386,13 @@ impl<'a> Disturbances<'a> {
             .copy_from(&(of * (normal * square)));
         Covariance {
             vectors: Vec::new(),
-            rest: Some(rest),
+            rest,
         }
     }
 
     /// The shape that the signal may have beside that of the map, for a signal of 1 N.
     pub fn shape(&self) -> DMatrix<f64> {
-        let rest = self.rest(&self.smooth(&SMOOTH), LATERAL, 1.0).rest;
-        rest.unwrap_or_default() / (self.level * self.level)
+        self.rest(&self.smooth, LATERAL, 1.0).rest / (self.level * self.level)
     }
 
     /// A series in one channel alone.
@@ -403,6 +418,17 @@ impl<'a> Disturbances<'a> {
         let scaled: Vec<f64> = scaled.collect();
         self.modes.of(channels(&scaled))
     }
+}
+
+/// The mean of Gaussian kernels of these lengths, over the radius of the probe.
+fn kernel(modes: &Modes, sweep: &Undisturbed, lengths: &[f64]) -> DMatrix<f64> {
+    let square = |length: &f64| (length * sweep.radius) * (length * sweep.radius);
+    let squares: Vec<f64> = lengths.iter().map(square).collect();
+    modes.covariance(|i, j| {
+        let apart = sweep.travelled[i] - sweep.travelled[j];
+        let kernel = |square: &f64| libm::exp(-0.5 * apart * apart / square);
+        squares.iter().map(kernel).sum::<f64>() / squares.len() as f64
+    })
 }
 
 /// A curve along the sweep, u from −1 to 1.

@@ -1,13 +1,17 @@
 //! The detector: the classes over the positions of some sweeps, and what they say of records.
 
+use std::collections::BTreeMap;
+use std::ops::AddAssign;
+
 use nalgebra::{DMatrix, DVector};
 
-use super::classes::{CLASSES, Class, Covariance, Disturbances, Part, SUPPORT_ALONE};
-use super::evidence::{Evidence, Signal, evidence, log_sum};
+use super::classes::{CLASSES, Class, Covariance, Disturbances, Part, SUPPORT_ALONE, SharedBy};
+use super::evidence::{Evidence, Signal, WeightedClass, evidence};
 use super::gates::wrong_level;
-use super::sweep::{PreparedSweep, prepared};
+use super::modes::Spectrum;
+use super::sweep::{Cleaned, PreparedSweep, prepared};
 use super::{RobustAnswer, RobustQuestion, RobustSignal, RobustSweep};
-use crate::detect::{Decision, DetectError, posterior};
+use crate::detect::{Decision, DetectError, ErrorRates, error_rates, map_threshold, posterior};
 use crate::force::Force;
 use crate::force_map::ForceTable;
 use crate::refusal::Refusal;
@@ -17,126 +21,89 @@ use crate::trace::{Cause, refused};
 
 /// A record that fits a class and hypothesis is farther from its mean with this probability.
 const MISFIT_RATE: f64 = 1e-5;
+/// A record allows a class with a posterior above this.
+const ALLOWED: f64 = 0.01;
 
 /// The detector for sweeps over the same positions.
-pub struct RobustDetector {
-    sweeps: Vec<PreparedSweep>,
-    classes: Vec<(&'static str, f64, DMatrix<f64>)>,
-    signals: Vec<Signal>,
-    shape: DMatrix<f64>,
+pub struct RobustDetector<'a> {
+    question: RobustQuestion<'a>,
+    pub(super) sweeps: Vec<PreparedSweep>,
+    classes: Vec<Class>,
+    pub(super) weighted: Vec<WeightedClass>,
+    pub(super) signals: Vec<Signal>,
+    pub(super) shape: DMatrix<f64>,
+    is_exchanged: bool,
 }
 
-impl RobustDetector {
+impl<'a> RobustDetector<'a> {
     /// The detector for records over the positions of these `sweeps` over the gel of the map `without` inclusion, with `signals` that may
     /// be there.
     ///
     /// # Errors
     /// Samples outside the maps; too few samples; signals that are nothing at the samples.
     ///
-    /// Implements: ROB-010, ROB-022, ROB-030, CLI-049.
+    /// Implements: ROB-010, ROB-030, CLI-049.
     pub fn new(
-        question: &RobustQuestion<'_>,
+        question: RobustQuestion<'a>,
         without: &ForceTable,
         sweeps: &[RobustSweep<'_>],
         signals: &[RobustSignal],
-    ) -> Result<RobustDetector, Refusal> {
+    ) -> Result<RobustDetector<'a>, Refusal> {
         question.check()?;
-        let prepare = |sweep: &RobustSweep<'_>| prepared(question, without, sweep);
+        let is_exchanged = is_exchanged(sweeps, signals);
+        let is_reference: Vec<bool> = sweeps.iter().map(|sweep| sweep.is_reference).collect();
+        let prepare = |sweep: &RobustSweep<'_>| prepared(&question, without, sweep);
         let sweeps = sweeps.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
         let disturbances: Vec<_> = (sweeps.iter())
             .map(|sweep| Disturbances::new(&sweep.modes, &sweep.undisturbed))
             .collect();
-        let part = |part: &Part| {
-            let sweeps: Vec<_> = disturbances.iter().map(|sweep| sweep.part(*part)).collect();
-            joined(&sweeps, part.is_shared())
-        };
-        let parts: Vec<_> = Part::ALL.iter().map(part).collect();
-        let always: Vec<_> = disturbances.iter().map(Disturbances::always).collect();
-        let always = joined(&always, false);
-        let class = |class: &Class| {
-            let mut covariance = always.clone();
-            for (part, size) in class.parts(question.known)? {
-                let at = Part::ALL.iter().position(|of| *of == part)?;
-                covariance += &parts[at] * (size * size);
-            }
-            Some((class.name, class.weight, covariance))
-        };
         let alone = (signals.len() == 1).then_some(&SUPPORT_ALONE);
-        let classes = CLASSES.iter().chain(alone).filter_map(class).collect();
-        let shapes: Vec<_> = (disturbances.iter())
-            .map(|sweep| Covariance {
-                vectors: Vec::new(),
-                rest: Some(sweep.shape()),
-            })
-            .collect();
-        let shape = joined(&shapes, false);
-        let signal = |signal: &RobustSignal| {
-            let pairs = sweeps.iter().zip(&signal.of_sweeps);
-            let modes = (pairs.clone()).map(|(sweep, series)| sweep.modes.of(channels(series)));
-            let mean = modes.flat_map(|modes| modes.iter().copied().collect::<Vec<_>>());
-            let mean = DVector::from_vec(mean.collect());
-            let sizes = pairs.map(|(_, series)| deviation(channels(series).normal));
-            let size = sizes.fold(0.0, f64::max);
-            Signal {
-                mean,
-                size,
-                log_prior: libm::log(signal.prior),
-            }
+        let all = CLASSES.iter().chain(alone);
+        let (classes, weighted) = weighted(all, question.known, &disturbances, &is_reference);
+        let shape = |(sweep, is_reference): (&Disturbances<'_>, &bool)| Covariance {
+            vectors: Vec::new(),
+            rest: sweep.shape() * f64::from(!is_reference),
         };
-        let signals: Vec<Signal> = signals.iter().map(signal).collect();
+        let shapes: Vec<_> = disturbances.iter().zip(&is_reference).map(shape).collect();
+        let shape = joined(&shapes, |sweep| sweep);
+        let signals: Vec<Signal> = signals.iter().map(|of| in_modes(of, &sweeps)).collect();
         if signals.iter().all(|signal| signal.mean.amax() == 0.0) {
             return Err(refused(DetectError::NoSignal));
         }
+        drop(disturbances);
         Ok(RobustDetector {
+            question,
             sweeps,
             classes,
+            weighted,
             signals,
             shape,
+            is_exchanged,
         })
     }
 
     /// Judges the forces of one record for each sweep.
     ///
-    /// Implements: ROB-001, ROB-002, ROB-003, ROB-031, ROB-040, ROB-060.
-    pub fn judge(
-        &self,
-        question: &RobustQuestion<'_>,
-        records: &[Force<&[f64]>],
-    ) -> Result<RobustAnswer, Refusal> {
+    /// Implements: ROB-003, ROB-004, ROB-031, ROB-060.
+    pub fn judge(&self, records: &[Force<&[f64]>]) -> Result<RobustAnswer, Refusal> {
         let mut answer = RobustAnswer {
             decision: None,
             causes: Vec::new(),
             theta: 0.0,
-            posterior: question.prior_h1,
+            posterior: self.question.prior_h1,
             thetas: Vec::new(),
             classes: Vec::new(),
+            rates: None,
             levels: Vec::new(),
             noise_sd: Vec::new(),
             glitches: Vec::new(),
+            explanation: None,
         };
-        let mut cleaned = Vec::new();
-        for (sweep, forces) in self.sweeps.iter().zip(records) {
-            match sweep.cleaned(question, *forces) {
-                Ok(found) => {
-                    answer.levels.push(found.level);
-                    answer
-                        .noise_sd
-                        .push(found.noise.as_ref().map(|noise| libm::sqrt(noise.variance)));
-                    answer.glitches.push(found.glitches);
-                    cleaned.push(found);
-                }
-                Err(cause) => answer.causes.push(cause),
-            }
-        }
+        let cleaned = self.cleaned(records, &mut answer);
         if !answer.causes.is_empty() {
             return Ok(answer);
         }
-        // A light sweep has no level of its own beside an offset: that of the heaviest stands for all.
-        let weights = self.sweeps.iter().map(PreparedSweep::weight);
-        let heaviest = weights
-            .zip(&answer.levels)
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        let level = heaviest.map_or(1.0, |(_, level)| *level);
+        let level = self.level(&answer.levels);
         if let Some(cause) = wrong_level(level) {
             answer.causes.push(cause);
             return Ok(answer);
@@ -148,42 +115,65 @@ impl RobustDetector {
             noise.extend(variances.iter());
         }
         let (record, noise) = (DVector::from_vec(record), DVector::from_vec(noise));
-        let weighted: Vec<_> = self
-            .classes
-            .iter()
-            .map(|(_, weight, of)| (*weight, of.clone()))
-            .collect();
-        let found = evidence(&record, &noise, &weighted, &self.signals, &self.shape);
+        let found = evidence(&record, &noise, &self.weighted, &self.signals, &self.shape);
         let Some(found) = found else {
             answer.causes.push(Cause::Misfit);
             return Ok(answer);
         };
-        self.conclude(question, &found, record.len(), &mut answer)?;
+        self.conclude(&found, &noise, &mut answer)?;
+        answer.explanation = self.explanation(cleaned, level, [&record, &noise], &answer);
+        if self.is_exchanged {
+            answer.decision = None;
+            answer.causes.insert(0, Cause::Exchanged);
+        }
         Ok(answer)
+    }
+
+    /// The records without glitches, of which `answer` gets level, noise and glitches, or the causes why they cannot be judged.
+    ///
+    /// Implements: ROB-001, ROB-002, ROB-011.
+    fn cleaned(&self, records: &[Force<&[f64]>], answer: &mut RobustAnswer) -> Vec<Cleaned> {
+        let mut all = Vec::new();
+        for (sweep, forces) in self.sweeps.iter().zip(records) {
+            match sweep.cleaned(&self.question, *forces) {
+                Ok(cleaned) => {
+                    let sd = |noise: &Spectrum| libm::sqrt(noise.variance);
+                    answer.levels.push(cleaned.level);
+                    answer.noise_sd.push(cleaned.noise.as_ref().map(sd));
+                    answer.glitches.push(cleaned.glitches);
+                    all.push(cleaned);
+                }
+                Err(cause) => answer.causes.push(cause),
+            }
+        }
+        all
+    }
+
+    /// The level of the sweep with the largest forces, which stands for all: that of a light one hides behind its offset.
+    fn level(&self, levels: &[f64]) -> f64 {
+        let weights = self.sweeps.iter().map(PreparedSweep::weight);
+        let pairs = weights.zip(levels);
+        let heaviest = pairs.max_by(|a, b| a.0.total_cmp(&b.0));
+        heaviest.map_or(1.0, |(_, level)| *level)
     }
 
     fn conclude(
         &self,
-        question: &RobustQuestion<'_>,
         found: &Evidence,
-        modes: usize,
+        noise: &DVector<f64>,
         answer: &mut RobustAnswer,
     ) -> Result<(), Refusal> {
-        let sum = |logs: &[f64]| logs.iter().copied().fold(f64::NEG_INFINITY, log_sum);
-        let (none, any) = (sum(&found.without), sum(&found.by_class));
+        let question = &self.question;
+        let [none, any] = found.totals();
         answer.theta = any - none;
         answer.posterior = posterior(answer.theta, question.prior_h1).map_err(refused)?;
         answer.thetas = found.with.iter().map(|with| with - none).collect();
         let pairs = found.without.iter().zip(&found.by_class);
         let shares =
             pairs.map(|(without, with)| [libm::exp(without - none), libm::exp(with - any)]);
-        answer.classes = self
-            .classes
-            .iter()
-            .map(|(name, ..)| *name)
-            .zip(shares)
-            .collect();
-        let degrees = modes as f64 - 2.0 * self.sweeps.len() as f64;
+        answer.classes = self.classes.iter().copied().zip(shares).collect();
+        answer.rates = self.rates(noise, answer)?;
+        let degrees = noise.len() as f64 - 2.0 * self.sweeps.len() as f64;
         let tail = chi_square(found.distance, degrees, 0.0);
         if tail.map_err(refused)?.upper < MISFIT_RATE {
             answer.causes.push(Cause::Misfit);
@@ -198,6 +188,128 @@ impl RobustDetector {
             None
         };
         Ok(())
+    }
+
+    /// γ of signal number `signal` beside each class, in white noise of a standard deviation, N: the signal-to-noise ratio if the
+    /// class is the right one.
+    ///
+    /// Implements: ROB-045.
+    pub fn gammas(&self, signal: usize, noise_sd: Force<f64>) -> Vec<(Class, f64)> {
+        let variance = |sweep: &PreparedSweep| {
+            let each = noise_sd
+                .into_array()
+                .map(|sd| vec![sd * sd; sweep.modes.count()]);
+            each.concat()
+        };
+        let noise: Vec<f64> = self.sweeps.iter().flat_map(variance).collect();
+        let gammas = self.beside(&self.signals[signal].mean, &DVector::from_vec(noise));
+        self.classes.iter().copied().zip(gammas).collect()
+    }
+
+    /// γ of a signal beside each class, in noise of these variances of the modes, N².
+    fn beside(&self, signal: &DVector<f64>, noise: &DVector<f64>) -> Vec<f64> {
+        let gamma = |class: &WeightedClass| {
+            let whole = &class.covariance + DMatrix::from_diagonal(noise);
+            // A class without a density has no record either.
+            let solved = whole.cholesky().map(|of| of.solve(signal));
+            solved.map_or(0.0, |solved| libm::sqrt(solved.dot(signal)))
+        };
+        self.weighted.iter().map(gamma).collect()
+    }
+
+    /// The signal with the largest posterior of the `answer`.
+    pub(super) fn likeliest_signal(&self, answer: &RobustAnswer) -> Option<&Signal> {
+        let log = |(signal, theta): &(&Signal, &f64)| signal.log_prior + *theta;
+        let all = self.signals.iter().zip(&answer.thetas);
+        let likeliest = all.max_by(|a, b| log(a).total_cmp(&log(b)));
+        likeliest.map(|(signal, _)| signal)
+    }
+
+    /// The largest rates of the two wrong answers over the classes that the record allows, for its likeliest signal.
+    ///
+    /// Implements: ROB-046.
+    fn rates(
+        &self,
+        noise: &DVector<f64>,
+        answer: &RobustAnswer,
+    ) -> Result<Option<ErrorRates>, Refusal> {
+        let Some(signal) = self.likeliest_signal(answer) else {
+            return Ok(None);
+        };
+        let odds = libm::log(self.question.sure / (1.0 - self.question.sure));
+        let prior = map_threshold(self.question.prior_h1).map_err(refused)?;
+        let mut largest = ErrorRates {
+            false_alarm: 0.0,
+            miss: 0.0,
+        };
+        let gammas = self.beside(&signal.mean, noise);
+        for ((_, [without, with]), gamma) in answer.classes.iter().zip(gammas) {
+            let at = |eta: f64| error_rates(gamma, eta).map_err(refused);
+            if *without > ALLOWED {
+                largest.false_alarm = largest.false_alarm.max(at(prior + odds)?.false_alarm);
+            }
+            if *with > ALLOWED {
+                largest.miss = largest.miss.max(at(prior - odds)?.miss);
+            }
+        }
+        Ok(Some(largest))
+    }
+}
+
+/// Whether the maps are exchanged: the forces with the inclusion are smaller, and no phantom says that the reference has none.
+///
+/// Implements: ROB-004.
+fn is_exchanged(sweeps: &[RobustSweep<'_>], signals: &[RobustSignal]) -> bool {
+    let normal = |of: &RobustSignal| -> f64 {
+        let sweeps = of.of_sweeps.iter();
+        sweeps.flat_map(|series| channels(series).normal).sum()
+    };
+    let is_measured = sweeps.iter().all(|sweep| sweep.changes.is_none());
+    is_measured && signals.len() == 1 && normal(&signals[0]) < 0.0
+}
+
+/// The classes that count beside what is `known`, with their covariances in all sweeps.
+///
+/// Implements: ROB-022, ROB-030, ROB-033, ROB-050.
+fn weighted<'c>(
+    classes: impl Iterator<Item = &'c Class>,
+    known: &[Part],
+    disturbances: &[Disturbances<'_>],
+    is_reference: &[bool],
+) -> (Vec<Class>, Vec<WeightedClass>) {
+    let part = |part: Part| {
+        let sweeps: Vec<_> = disturbances.iter().map(|sweep| sweep.part(part)).collect();
+        joined(&sweeps, |sweep| match part.shared_by() {
+            SharedBy::None => sweep,
+            SharedBy::Place => usize::from(is_reference[sweep]),
+            SharedBy::Gel => 0,
+        })
+    };
+    let parts = Part::ALL.map(part);
+    let always: Vec<_> = disturbances.iter().map(Disturbances::always).collect();
+    let always = joined(&always, |sweep| sweep);
+    let class = |class: &Class| {
+        let mut covariance = always.clone();
+        for (part, size) in class.parts(known)? {
+            covariance += &parts[part as usize] * (size * size);
+        }
+        let weight = class.weight;
+        Some((*class, WeightedClass { weight, covariance }))
+    };
+    classes.filter_map(class).unzip()
+}
+
+/// A signal in the modes of all sweeps.
+fn in_modes(signal: &RobustSignal, sweeps: &[PreparedSweep]) -> Signal {
+    let pairs = sweeps.iter().zip(&signal.of_sweeps);
+    let modes = (pairs.clone()).map(|(sweep, series)| sweep.modes.of(channels(series)));
+    let mean = modes.flat_map(|modes| modes.iter().copied().collect::<Vec<_>>());
+    let sizes = pairs.map(|(_, series)| deviation(channels(series).normal));
+    Signal {
+        mean: DVector::from_vec(mean.collect()),
+        size: sizes.fold(0.0, f64::max),
+        amplitude_sd: signal.amplitude_sd,
+        log_prior: libm::log(signal.prior),
     }
 }
 
@@ -214,37 +326,25 @@ fn deviation(series: &[f64]) -> f64 {
     )
 }
 
-/// The covariance of all sweeps: directions of the same number are one direction if the part `is_shared`.
-pub(super) fn joined(sweeps: &[Covariance], is_shared: bool) -> DMatrix<f64> {
-    let lengths: Vec<usize> = (sweeps.iter())
-        .map(|of| {
-            of.vectors
-                .first()
-                .map_or(of.rest.as_ref().map_or(0, DMatrix::nrows), DVector::len)
-        })
-        .collect();
-    let whole = lengths.iter().sum();
+/// The covariance of all sweeps: directions of the same number are one direction in sweeps of one group.
+pub(super) fn joined(sweeps: &[Covariance], group: impl Fn(usize) -> usize) -> DMatrix<f64> {
+    let whole = sweeps.iter().map(|of| of.rest.nrows()).sum();
     let mut covariance = DMatrix::zeros(whole, whole);
-    let mut shared: Vec<DVector<f64>> = Vec::new();
+    let mut directions: BTreeMap<(usize, usize), DVector<f64>> = BTreeMap::new();
     let mut start = 0;
-    for (of, length) in sweeps.iter().zip(lengths) {
-        if let Some(rest) = &of.rest {
-            covariance
-                .view_mut((start, start), (length, length))
-                .copy_from(rest);
-        }
+    for (sweep, of) in sweeps.iter().enumerate() {
+        let length = of.rest.nrows();
+        let mut own = covariance.view_mut((start, start), (length, length));
+        own.copy_from(&of.rest);
         for (number, vector) in of.vectors.iter().enumerate() {
-            let mut embedded = DVector::zeros(whole);
-            embedded.rows_mut(start, length).copy_from(vector);
-            match shared.get_mut(number).filter(|_| is_shared) {
-                Some(direction) => *direction += embedded,
-                None => shared.push(embedded),
-            }
+            let direction = directions.entry((group(sweep), number));
+            let direction = direction.or_insert_with(|| DVector::zeros(whole));
+            direction.rows_mut(start, length).add_assign(vector);
         }
         start += length;
     }
-    for direction in shared {
-        covariance.ger(1.0, &direction, &direction, 1.0);
+    for direction in directions.values() {
+        covariance.ger(1.0, direction, direction, 1.0);
     }
     covariance
 }

@@ -2,11 +2,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-/// The amplitude of a signal is that of its map within this share, as a standard deviation: stiffness and size of the inclusion,
-/// and finite strain, are not those of the map.
-const AMPLITUDE: f64 = 0.4;
 /// The shape is off by this share of the signal's root mean square.
-const SHAPE: f64 = 0.15;
+pub const SHAPE: f64 = 0.15;
 /// Different sizes of the shape's error, of which the nearest stands for that of a hypothesis.
 const SHAPES: usize = 8;
 
@@ -17,8 +14,19 @@ pub struct Signal {
     pub mean: DVector<f64>,
     /// The root mean square of its normal part about its mean, N.
     pub size: f64,
+    /// The standard deviation of its amplitude, over that of its map.
+    pub amplitude_sd: f64,
     /// ln of the prior, given an inclusion.
     pub log_prior: f64,
+}
+
+/// A class of disturbance in the modes of all sweeps.
+#[derive(Debug, Clone)]
+pub struct WeightedClass {
+    /// Its prior, over that of the others.
+    pub weight: f64,
+    /// The covariance of what disturbs, N².
+    pub covariance: DMatrix<f64>,
 }
 
 /// What a record says of each class under either hypothesis.
@@ -32,6 +40,16 @@ pub struct Evidence {
     pub by_class: Vec<f64>,
     /// The least Mahalanobis distance squared of the record in the class and hypothesis of the highest density.
     pub distance: f64,
+}
+
+impl Evidence {
+    /// ln of the density of the record without inclusion, and with any: both averaged over the classes. θ is their difference.
+    ///
+    /// Implements: ROB-032.
+    pub fn totals(&self) -> [f64; 2] {
+        [&self.without, &self.by_class]
+            .map(|logs| logs.iter().copied().fold(f64::NEG_INFINITY, log_sum))
+    }
 }
 
 /// A factorised covariance, and the record over it.
@@ -57,14 +75,14 @@ impl Factor {
     }
 
     /// ln of the density of the record with a signal of uncertain amplitude, and the distance squared.
-    fn with(&self, signal: &DVector<f64>) -> (f64, f64) {
-        let mut along = signal.clone();
+    fn with(&self, signal: &Signal) -> (f64, f64) {
+        let mut along = signal.mean.clone();
         self.cholesky
             .l_dirty()
             .solve_lower_triangular_mut(&mut along);
         let (square, cross) = (along.norm_squared(), along.dot(&self.white));
         // z = white − along, and (1 + a²|along|²) is the determinant's factor.
-        let variance = AMPLITUDE * AMPLITUDE;
+        let variance = signal.amplitude_sd * signal.amplitude_sd;
         let left = self.white.norm_squared() - 2.0 * cross + square;
         let projected = cross - square;
         let grown = 1.0 + variance * square;
@@ -81,18 +99,18 @@ impl Factor {
 pub fn evidence(
     record: &DVector<f64>,
     noise: &DVector<f64>,
-    classes: &[(f64, DMatrix<f64>)],
+    classes: &[WeightedClass],
     signals: &[Signal],
     shape: &DMatrix<f64>,
 ) -> Option<Evidence> {
-    let whole: f64 = classes.iter().map(|(weight, _)| weight).sum();
+    let whole: f64 = classes.iter().map(|class| class.weight).sum();
     let (sizes, nearest) = sizes(signals);
     let (mut without, mut by_class) = (Vec::new(), Vec::new());
     let mut with = vec![f64::NEG_INFINITY; signals.len()];
     let mut best = (f64::NEG_INFINITY, f64::INFINITY);
-    for (weight, covariance) in classes {
-        let weight = libm::log(weight / whole);
-        let mut covariance = covariance.clone();
+    for class in classes {
+        let weight = libm::log(class.weight / whole);
+        let mut covariance = class.covariance.clone();
         for (at, variance) in noise.iter().enumerate() {
             covariance[(at, at)] += variance;
         }
@@ -108,7 +126,7 @@ pub fn evidence(
         let factors = sizes.iter().map(factor).collect::<Option<Vec<_>>>()?;
         let mut any = f64::NEG_INFINITY;
         for ((signal, of), with) in signals.iter().zip(&nearest).zip(&mut with) {
-            let (density, distance) = factors[*of].with(&signal.mean);
+            let (density, distance) = factors[*of].with(signal);
             let density = density + weight;
             if density > best.0 {
                 best = (density, distance);

@@ -11,11 +11,13 @@
 //! | `classes.rs` | the disturbances, and their classes |
 //! | `evidence.rs` | the density of a record by classes and hypotheses |
 //! | `detector.rs` | all of it for some sweeps, and what it says of records |
+//! | `explanation.rs` | what either hypothesis expects of a record |
 //! | `place.rs` | the hypotheses of a bank, and where the inclusion lies |
 
 mod classes;
 mod detector;
-mod evidence;
+pub(crate) mod evidence;
+mod explanation;
 mod gates;
 mod gel;
 mod modes;
@@ -26,17 +28,18 @@ mod tests;
 
 pub use classes::{CLASSES, Class, Part};
 pub use detector::RobustDetector;
-pub use gel::{GelChange, GelChanges};
+pub use explanation::Explanation;
+pub use gel::{GelChange, GelChanges, GelUncertainty};
 pub use place::{BankHypotheses, PlaceInterval, RobustPlace};
 
 use crate::bank::Bank;
-use crate::detect::Decision;
 use crate::detect::mixture::mixture_theta;
+use crate::detect::{Decision, ErrorRates};
 use crate::force::Force;
 use crate::force_map::{ForceTable, Hypotheses};
 use crate::refusal::Refusal;
 use crate::stats::error::{check_positive, check_probability, in_range};
-use crate::trace::design::{channels, difference, expected};
+use crate::trace::design::{difference, expected};
 use crate::trace::{Cause, Record, refused};
 
 /// What is known of a record, and when an answer is sure.
@@ -50,13 +53,20 @@ pub struct RobustQuestion<'a> {
     pub is_tared: bool,
     /// The standard deviation of white noise on a sample, N; none if it is to be estimated from the record.
     pub noise_sd: Option<Force<f64>>,
+    /// Whether noise that is estimated is white.
+    pub is_white: bool,
     /// Pr(H = 1) before the sweep.
     pub prior_h1: f64,
     /// The posterior from which there is an inclusion; up to 1 minus this there is none.
     pub sure: f64,
 }
 
-/// One sweep of the place in question.
+/// The standard deviation of the amplitude of a signal, over that of its map: stiffness and size of the inclusion, and finite strain, are
+/// not those of the map. Of a bank with several diameters the size is one of them.
+pub const AMPLITUDE: f64 = 0.4;
+const AMPLITUDE_OF_DIAMETERS: f64 = 0.15;
+
+/// One sweep of the place in question, or a reference sweep of the same gel.
 #[derive(Debug, Clone, Copy)]
 pub struct RobustSweep<'a> {
     /// The forces.
@@ -65,6 +75,22 @@ pub struct RobustSweep<'a> {
     pub depth: f64,
     /// The gels beside that of the maps at this depth; none of measured maps.
     pub changes: Option<&'a GelChanges>,
+    /// Whether it is over another place of the gel, where there is no inclusion.
+    pub is_reference: bool,
+}
+
+/// Nothing is known, an inclusion is as probable as none, and an answer is sure from 0.95 on.
+impl Default for RobustQuestion<'_> {
+    fn default() -> Self {
+        RobustQuestion {
+            known: &[],
+            is_tared: false,
+            noise_sd: None,
+            is_white: false,
+            prior_h1: 0.5,
+            sure: 0.95,
+        }
+    }
 }
 
 /// A hypothesis: what an inclusion adds to the forces at the samples of each sweep, stacked, N.
@@ -72,6 +98,8 @@ pub struct RobustSweep<'a> {
 pub struct RobustSignal {
     /// One series for each sweep.
     pub of_sweeps: Vec<Vec<f64>>,
+    /// The standard deviation of its amplitude, over that of its map.
+    pub amplitude_sd: f64,
     /// Its probability, given an inclusion.
     pub prior: f64,
 }
@@ -90,13 +118,26 @@ pub struct RobustAnswer {
     /// ln of the likelihood ratio of each signal.
     pub thetas: Vec<f64>,
     /// The posterior of each class without and with an inclusion, in the order of the classes that count.
-    pub classes: Vec<(&'static str, [f64; 2])>,
+    pub classes: Vec<(Class, [f64; 2])>,
+    /// The largest rates of a false "inclusion" and a false "no inclusion", over the classes with a posterior above 1 %; none if the
+    /// record cannot be compared.
+    pub rates: Option<ErrorRates>,
     /// Σ F f/Σ f² of the normal force of each sweep.
     pub levels: Vec<f64>,
     /// Standard deviation of the noise of each sweep, N.
     pub noise_sd: Vec<Force<f64>>,
     /// Samples of each sweep that were replaced.
     pub glitches: Vec<usize>,
+    /// What either hypothesis expects of the records, where they were compared.
+    pub explanation: Option<Explanation>,
+}
+
+impl RobustAnswer {
+    /// The likeliest class without (0) or with (1) an inclusion, by its number.
+    pub fn likeliest_class(&self, hypothesis: usize) -> Option<usize> {
+        let share = |class: &usize| self.classes[*class].1[hypothesis];
+        (0..self.classes.len()).max_by(|a, b| share(a).total_cmp(&share(b)))
+    }
 }
 
 impl RobustQuestion<'_> {
@@ -121,70 +162,79 @@ impl RobustQuestion<'_> {
     /// # Errors
     /// Positions or depths outside the maps; too few samples; a probability or a noise out of its range.
     ///
-    /// Implements: ROB-030, ROB-004.
+    /// Implements: ROB-030.
     pub fn judge(
         &self,
         hypotheses: Hypotheses<'_>,
         sweeps: &[RobustSweep<'_>],
     ) -> Result<RobustAnswer, Refusal> {
+        self.detector(hypotheses, sweeps)?.judge(&records(sweeps))
+    }
+
+    /// The detector of records over the positions of these sweeps.
+    ///
+    /// # Errors
+    /// As [`RobustQuestion::judge`].
+    pub fn detector(
+        &self,
+        hypotheses: Hypotheses<'_>,
+        sweeps: &[RobustSweep<'_>],
+    ) -> Result<RobustDetector<'_>, Refusal> {
         let (without, with) = (hypotheses.without(), hypotheses.with());
-        let signal = |&RobustSweep { record, depth, .. }: &RobustSweep<'_>| {
-            let none = expected(record, without, depth)?;
-            Ok(difference(&expected(record, with, depth)?, &none))
+        let signal = |sweep: &RobustSweep<'_>| sweep.signal(with, &sweep.expected(without)?);
+        let of_sweeps = sweeps.iter().map(signal).collect::<Result<_, Refusal>>()?;
+        let signal = RobustSignal {
+            of_sweeps,
+            amplitude_sd: AMPLITUDE,
+            prior: 1.0,
         };
-        let of_sweeps = sweeps
-            .iter()
-            .map(signal)
-            .collect::<Result<Vec<_>, Refusal>>()?;
-        let normal = of_sweeps.iter().flat_map(|series| channels(series).normal);
-        let is_exchanged = normal.sum::<f64>() < 0.0;
-        let prior = 1.0;
-        let mut answer = self.answer(without, sweeps, &[RobustSignal { of_sweeps, prior }])?;
-        if is_exchanged {
-            answer.decision = None;
-            answer.causes.insert(0, Cause::Exchanged);
-        }
-        Ok(answer)
+        RobustDetector::new(*self, without, sweeps, &[signal])
     }
 
     /// Searches sweeps of one place, all at the depth of the bank, for any inclusion of it, or two.
     ///
     /// # Errors
-    /// Positions outside the bank; too few samples; a prior that is none; a probability or a noise out of its range.
+    /// Another depth; positions outside the bank; too few samples; a prior that is none; a probability or a noise out of its range.
     ///
     /// Implements: ROB-030, ROB-041.
     pub fn locate(
         &self,
         bank: &Bank,
         prior: Option<&[f64]>,
-        changes: Option<&GelChanges>,
-        records: &[&Record],
+        sweeps: &[RobustSweep<'_>],
     ) -> Result<(RobustAnswer, RobustPlace), Refusal> {
         if let Some(prior) = prior {
             // Whether it is one.
             mixture_theta(&vec![0.0; bank.maps().len()], prior).map_err(refused)?;
         }
+        let mut depths = sweeps.iter().map(|sweep| sweep.depth);
+        depths.try_for_each(|depth| bank.check_depth(depth))?;
         let hypotheses = BankHypotheses::new(bank, prior);
-        let depth = bank.depth();
-        let sweeps = records.iter().map(|&record| RobustSweep {
-            record,
-            depth,
-            changes,
-        });
-        let sweeps: Vec<_> = sweeps.collect();
-        let signals = hypotheses.signals(records)?;
-        let answer = self.answer(bank.reference().table(), &sweeps, &signals)?;
+        let signals = hypotheses.signals(sweeps)?;
+        let without = bank.reference().table();
+        let detector = RobustDetector::new(*self, without, sweeps, &signals)?;
+        let answer = detector.judge(&records(sweeps))?;
         let place = hypotheses.place(&answer);
         Ok((answer, place))
     }
+}
 
-    fn answer(
-        &self,
-        without: &ForceTable,
-        sweeps: &[RobustSweep<'_>],
-        signals: &[RobustSignal],
-    ) -> Result<RobustAnswer, Refusal> {
-        let records: Vec<_> = sweeps.iter().map(|sweep| sweep.record.forces()).collect();
-        RobustDetector::new(self, without, sweeps, signals)?.judge(self, &records)
+fn records<'a>(sweeps: &[RobustSweep<'a>]) -> Vec<Force<&'a [f64]>> {
+    sweeps.iter().map(|sweep| sweep.record.forces()).collect()
+}
+
+impl RobustSweep<'_> {
+    /// The forces of a map at the samples, stacked, N.
+    fn expected(&self, map: &ForceTable) -> Result<Vec<f64>, Refusal> {
+        expected(self.record, map, self.depth)
+    }
+
+    /// What the inclusion of the map `with` adds to the forces `none` without inclusion, N.
+    fn signal(&self, with: &ForceTable, none: &[f64]) -> Result<Vec<f64>, Refusal> {
+        let signal = difference(&self.expected(with)?, none);
+        Ok(match self.is_reference {
+            true => vec![0.0; signal.len()],
+            false => signal,
+        })
     }
 }

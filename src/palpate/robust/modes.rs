@@ -109,9 +109,14 @@ impl Modes {
         self.basis.tr_mul(&(kernel * &self.basis))
     }
 
+    /// The series of a channel with these amplitudes.
+    pub fn series(&self, amplitudes: &DVector<f64>) -> DVector<f64> {
+        &self.basis * amplitudes
+    }
+
     /// What the modes leave of a channel.
     pub fn residual(&self, channel: &[f64]) -> Vec<f64> {
-        let smooth = &self.basis * self.of_channel(channel);
+        let smooth = self.series(&self.of_channel(channel));
         channel.iter().zip(&smooth).map(|(f, s)| f - s).collect()
     }
 
@@ -120,16 +125,19 @@ impl Modes {
         self.basis.row(sample).norm_squared()
     }
 
-    /// The noise of a channel from its frequencies above those of the modes: white, or with a corner where that is much likelier.
-    /// `step` is the resolution of the sensor, N.
+    /// The noise of a channel from its frequencies above those of the modes: white, or with a corner where that is much likelier and not
+    /// excluded. `step` is the resolution of the sensor, N.
     ///
     /// Implements: ROB-011.
-    pub fn noise(&self, channel: &[f64], step: f64) -> Spectrum {
+    pub fn noise(&self, channel: &[f64], step: f64, is_white: bool) -> Spectrum {
         let left = self.residual(channel);
         let (samples, first) = (self.samples(), self.count() + 1);
         let frequency = |mode: usize| PI * mode as f64 / samples as f64;
+        let quarter = |of: usize| libm::cos(0.5 * frequency(of));
+        let waves: Vec<f64> = (0..4 * samples).map(quarter).collect();
         let power = |mode: usize| {
-            let wave = |at: usize| libm::cos(frequency(mode) * (at as f64 + 0.5));
+            // cos(ω(n + ½)).
+            let wave = |at: usize| waves[mode * (2 * at + 1) % waves.len()];
             let sum: f64 = left.iter().enumerate().map(|(at, r)| r * wave(at)).sum();
             2.0 * sum * sum / samples as f64
         };
@@ -149,7 +157,8 @@ impl Modes {
         };
         let (white, variance) = fitted(&|_| 1.0);
         let mut best = (white + COLOURED, variance, None);
-        for corner in CORNERS {
+        let corners = if is_white { &[][..] } else { &CORNERS };
+        for &corner in corners {
             for share in WHITE_SHARES {
                 let (likelihood, variance) = fitted(&|at| coloured(at, corner, share));
                 if likelihood > best.0 {

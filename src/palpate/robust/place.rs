@@ -1,12 +1,10 @@
 //! A bank's inclusions as hypotheses, and where the inclusion of a record lies.
 
 use super::evidence::log_sum;
-use super::{RobustAnswer, RobustSignal};
+use super::{AMPLITUDE, AMPLITUDE_OF_DIAMETERS, RobustAnswer, RobustSignal, RobustSweep};
 use crate::bank::Bank;
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
-use crate::trace::Record;
-use crate::trace::design::{difference, expected};
 
 /// The prior of two inclusions at one depth, given any, and the least distance between them, m.
 const PAIRS: f64 = 0.2;
@@ -42,10 +40,24 @@ pub struct PlaceInterval {
 pub struct RobustPlace {
     /// In the order of [`crate::bank::Parameter::ALL`]; none for a parameter with one value.
     pub intervals: [Option<PlaceInterval>; 4],
+    /// The probability of each value of each parameter, given one inclusion.
+    pub marginals: [Vec<f64>; 4],
     /// The probability of two inclusions, given any.
     pub several: f64,
     /// Down to this depth, m, any inclusion of the bank is excluded; none if not even the shallowest is.
     pub none_down_to: Option<f64>,
+}
+
+impl PlaceInterval {
+    /// Both ends as they are to be `shown`.
+    pub fn in_words(&self, shown: impl Fn(f64) -> String) -> String {
+        match [self.lower, self.upper].map(|end| end.map(&shown)) {
+            [Some(low), Some(high)] => format!("{low} to {high}"),
+            [Some(low), None] => format!("from {low}"),
+            [None, Some(high)] => format!("up to {high}"),
+            [None, None] => "wider than the bank".into(),
+        }
+    }
 }
 
 impl<'a> BankHypotheses<'a> {
@@ -77,31 +89,33 @@ impl<'a> BankHypotheses<'a> {
         }
     }
 
-    /// What each adds to the forces at the samples of each of the `records`.
+    /// What each adds to the forces at the samples of each of the `sweeps`.
     ///
     /// # Errors
     /// Samples outside the bank.
-    pub fn signals(&self, records: &[&Record]) -> Result<Vec<RobustSignal>, Refusal> {
-        let depth = self.bank.depth();
-        let at = |record: &&Record| {
-            let none = expected(record, self.bank.reference().table(), depth)?;
+    pub fn signals(&self, sweeps: &[RobustSweep<'_>]) -> Result<Vec<RobustSignal>, Refusal> {
+        let at = |sweep: &RobustSweep<'_>| {
+            let none = sweep.expected(self.bank.reference().table())?;
             let maps = self.bank.maps().iter();
-            let signal =
-                |map: &ForceMap| Ok(difference(&expected(record, map.table(), depth)?, &none));
+            let signal = |map: &ForceMap| sweep.signal(map.table(), &none);
             maps.map(signal).collect::<Result<Vec<_>, Refusal>>()
         };
-        let of_records = records.iter().map(at).collect::<Result<Vec<_>, _>>()?;
+        let of_sweeps = sweeps.iter().map(at).collect::<Result<Vec<_>, _>>()?;
         let sum = |maps: &[usize], signals: &[Vec<f64>]| {
             let sample = |at: usize| maps.iter().map(|&map| signals[map][at]).sum();
             (0..signals[0].len()).map(sample).collect()
         };
+        let amplitude_sd = match self.bank.axes()[2].len() {
+            1 => AMPLITUDE,
+            _ => AMPLITUDE_OF_DIAMETERS,
+        };
         let signal = |(maps, prior): &(Vec<usize>, f64)| {
-            let of_sweeps = of_records
-                .iter()
-                .map(|signals| sum(maps, signals))
-                .collect();
-            let prior = *prior;
-            RobustSignal { of_sweeps, prior }
+            let of_sweeps = of_sweeps.iter().map(|signals| sum(maps, signals)).collect();
+            RobustSignal {
+                of_sweeps,
+                amplitude_sd,
+                prior: *prior,
+            }
         };
         Ok(self.of.iter().map(signal).collect())
     }
@@ -120,19 +134,25 @@ impl<'a> BankHypotheses<'a> {
             .iter()
             .zip(&shares)
             .filter(|((maps, _), _)| maps.len() == 1);
-        let several = 1.0 - singles.clone().map(|(_, share)| share).sum::<f64>();
-        let axis = |number: usize| {
+        let one: f64 = singles.clone().map(|(_, share)| share).sum();
+        let marginals = [0, 1, 2, 3].map(|number: usize| {
             let values = &self.bank.axes()[number];
             let mut along = vec![0.0; values.len()];
             for ((maps, _), share) in singles.clone() {
                 let value = self.bank.point(maps[0])[number];
-                along[values.partition_point(|of| *of < value)] += share;
+                along[values.partition_point(|of| *of < value)] +=
+                    share / one.max(f64::MIN_POSITIVE);
             }
-            (values.len() > 1).then(|| interval(values, &along))
+            along
+        });
+        let axis = |number: usize| {
+            let values = &self.bank.axes()[number];
+            (values.len() > 1).then(|| interval(values, &marginals[number]))
         };
         RobustPlace {
             intervals: [0, 1, 2, 3].map(axis),
-            several: several.max(0.0),
+            marginals,
+            several: (1.0 - one).max(0.0),
             none_down_to: self.none_down_to(&answer.thetas),
         }
     }
@@ -158,12 +178,11 @@ impl<'a> BankHypotheses<'a> {
 
 /// The interval of one parameter from the probabilities of its `values`, whose cells end half-way to the next.
 fn interval(values: &[f64], shares: &[f64]) -> PlaceInterval {
-    let whole: f64 = shares.iter().sum::<f64>().max(f64::MIN_POSITIVE);
     let last = values.len() - 1;
     let mut sum = 0.0;
     let up_to: Vec<f64> = (shares.iter())
         .map(|share| {
-            sum += share / whole;
+            sum += share;
             sum
         })
         .collect();
@@ -174,7 +193,7 @@ fn interval(values: &[f64], shares: &[f64]) -> PlaceInterval {
         .unwrap_or(last);
     let pairs = values.iter().zip(shares);
     PlaceInterval {
-        estimate: pairs.map(|(value, share)| value * share / whole).sum(),
+        estimate: pairs.map(|(value, share)| value * share).sum(),
         lower: (first > 0).then(|| 0.5 * (values[first - 1] + values[first])),
         upper: (end < last).then(|| 0.5 * (values[end] + values[end + 1])),
     }

@@ -4,7 +4,7 @@ use nalgebra::DVector;
 
 use super::classes::Undisturbed;
 use super::gates;
-use super::gel::GelChange;
+use super::gel::{GelChange, GelUncertainty};
 use super::modes::{Modes, Spectrum};
 use super::{RobustQuestion, RobustSweep};
 use crate::force::Force;
@@ -27,7 +27,7 @@ pub struct PreparedSweep {
 
 /// A record without its glitches.
 pub struct Cleaned {
-    forces: Force<Vec<f64>>,
+    pub forces: Force<Vec<f64>>,
     /// Σ F f/Σ f² of its normal force.
     pub level: f64,
     /// The noise of each channel.
@@ -47,6 +47,8 @@ pub fn prepared(
 ) -> Result<PreparedSweep, Refusal> {
     let (record, depth) = (sweep.record, sweep.depth);
     let radius = sweep.changes.map_or(RADIUS, |changes| changes.radius);
+    let of_default = GelUncertainty::default().depth_percent;
+    let depth_percent = sweep.changes.map_or(of_default, |of| of.depth_percent);
     let samples = record.positions().len();
     let least = match question.noise_sd {
         Some(_) => gates::LEAST_SAMPLES_IN_NOISE,
@@ -78,7 +80,7 @@ pub fn prepared(
         gel,
         support,
         travelled: record.travelled(),
-        depth,
+        depth_sd: 0.01 * depth_percent * depth,
         radius,
         is_tared: question.is_tared,
         forces,
@@ -126,7 +128,8 @@ impl PreparedSweep {
         let white = |sd: f64| Spectrum::white(modes, sd * sd);
         let noise = match question.noise_sd {
             Some(sd) => sd.map(white),
-            None => (forces.as_ref().zip(steps)).map(|(channel, step)| modes.noise(channel, step)),
+            None => (forces.as_ref().zip(steps))
+                .map(|(channel, step)| modes.noise(channel, step, question.is_white)),
         };
         Ok(Cleaned {
             forces,
@@ -145,6 +148,22 @@ impl PreparedSweep {
             amplitudes,
             DVector::from_iterator(2 * self.modes.count(), noise) / (level * level),
         ]
+    }
+
+    /// The forces at the samples, N, for amplitudes beside those of the map and a level.
+    pub fn expected(&self, amplitudes: &DVector<f64>, level: f64) -> Force<Vec<f64>> {
+        let count = self.modes.count();
+        let [lateral, normal] = [0, count].map(|start| {
+            let amplitudes = amplitudes.rows(start, count).into_owned();
+            self.modes.series(&amplitudes)
+        });
+        let of_map = channels(&self.undisturbed.forces);
+        of_map
+            .zip(Force::new(lateral, normal))
+            .map(|(map, beside)| {
+                let pairs = map.iter().zip(&beside);
+                pairs.map(|(map, beside)| level * (map + beside)).collect()
+            })
     }
 
     /// Σ of the normal forces that the map expects, N.

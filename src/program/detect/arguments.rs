@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use crate::error::refuse;
-use crate::numbers::{length_or_zero, newtons, position, probability, velocity};
+use crate::numbers::{length_or_zero, newtons, position, probability, sure_probability, velocity};
 use crate::{CliError, Format};
 use palpate::force::Force;
 use palpate::robust::Part;
@@ -41,7 +41,7 @@ pub(super) struct ModelArguments {
     #[arg(long, value_enum, default_value_t = ModelName::Robust)]
     pub model: ModelName,
     /// Posterior probability from which an inclusion is reported; none is reported up to 1 minus this [default: 0.95]
-    #[arg(long, value_name = "P", value_parser = probability, allow_hyphen_values = true)]
+    #[arg(long, value_name = "P", value_parser = sure_probability, allow_hyphen_values = true)]
     pub sure: Option<f64>,
     /// The sensor was set to zero on the gel, so that the forces say nothing of contact
     #[arg(long)]
@@ -49,6 +49,12 @@ pub(super) struct ModelArguments {
     /// Takes all traces for sweeps of one place
     #[arg(long)]
     pub together: bool,
+    /// A sweep of the same gel over a place without an inclusion, at the first --depth-mm; may be given several times
+    #[arg(long = "reference-sweep", value_name = "TRACE.csv")]
+    pub reference_sweeps: Vec<PathBuf>,
+    /// How well the gel is known: a TOML file with standard deviations in percent
+    #[arg(long, value_name = "FILE")]
+    pub gel_uncertainty: Option<PathBuf>,
 }
 
 /// The models by name.
@@ -95,8 +101,9 @@ pub(super) struct MapsOrBank {
         default_value = "1999"
     )]
     pub seed: u64,
-    /// Writes a figure of the inclusion's position as SVG; with a bank
-    #[arg(long, value_name = "FILE", conflicts_with = "reference")]
+    /// Writes a figure as SVG: the record beside what explains it without and with an inclusion. With --model exact and a bank: the
+    /// inclusion's position
+    #[arg(long, value_name = "FILE")]
     pub figure: Option<PathBuf>,
 }
 
@@ -270,7 +277,7 @@ impl NoiseArguments {
     ///
     /// Implements: ROB-050.
     pub fn undisturbed(&self) -> Result<Vec<Part>, CliError> {
-        let known = listed(self.known.as_deref().unwrap_or("none"), Part::KNOWN);
+        let known = listed(self.known.as_deref().unwrap_or("none"), Part::known());
         known.or_else(|error| refuse!("--known {error}"))
     }
 

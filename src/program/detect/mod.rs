@@ -38,11 +38,11 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
         }
         Ok(trace.record(motion.map(|(velocity, start)| Motion { velocity, start }))?)
     };
-    let mut records = arguments
+    let sweeps = arguments
         .traces
         .iter()
-        .map(read)
-        .collect::<Result<Vec<_>, _>>()?;
+        .chain(&arguments.model.reference_sweeps);
+    let mut records = sweeps.map(read).collect::<Result<Vec<_>, _>>()?;
     if arguments.model.model == ModelName::Robust {
         return robust::detect(arguments, records);
     }
@@ -56,32 +56,25 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
 
 /// Judges the record at the position for which the maps are.
 fn by_maps(arguments: &DetectArguments, record: Record) -> Result<(), CliError> {
-    // The parser has refused all but a bank or both maps with a depth.
-    let (none, files) = (PathBuf::new(), &arguments.hypotheses);
-    let [reference_path, path] =
-        [&files.reference, &files.inclusion].map(|path| path.as_ref().unwrap_or(&none));
-    let (reference, inclusion) = (map(reference_path)?, map(path)?);
+    let maps = TwoMaps::read(arguments)?;
+    let (table, file) = (maps.reference.table(), maps.reference_file);
     let depth = depth(arguments)?.unwrap_or(0.0);
-    let record = trimmed(arguments, record, reference.table())?;
+    let record = trimmed(arguments, record, table)?;
     let mut warnings = Warnings::default();
-    let table = reference.table();
     let known = arguments.noise.known()?;
-    let question = question(
-        arguments,
-        &known,
-        depth,
-        table,
-        reference_path,
-        &mut warnings,
-    )?;
-    let any_maps = files.any_maps;
-    let hypotheses = hypotheses(any_maps, path, &reference, &inclusion, &mut warnings)?;
-    let found = question.judge(hypotheses, &record)?;
+    let question = question(arguments, &known, depth, table, file, &mut warnings)?;
+    let found = question.judge(maps.hypotheses(&mut warnings)?, &record)?;
     let mut rows = asked(arguments, &[depth], &[record]);
     exactly_asked(arguments, &known, &mut rows);
     rows.append(found.rows());
-    let verdict = (found.decision, &found.causes[..], &found.fit);
-    tell(arguments, &known, verdict, rows, warnings)
+    let words = conclusion(&known, found.decision, &found.causes, &found.fit);
+    tell(
+        arguments,
+        (found.decision, &found.causes),
+        &words,
+        rows,
+        warnings,
+    )
 }
 
 /// Searches the record for any inclusion of a bank.
@@ -109,8 +102,14 @@ fn by_bank(arguments: &DetectArguments, record: Record, path: &Path) -> Result<(
     let mut rows = asked(arguments, &[depth], &[record]);
     exactly_asked(arguments, &known, &mut rows);
     rows.append(found.rows(&bank)?);
-    let verdict = (found.decision, &found.causes[..], &found.fit);
-    tell(arguments, &known, verdict, rows, warnings)
+    let words = conclusion(&known, found.decision, &found.causes, &found.fit);
+    tell(
+        arguments,
+        (found.decision, &found.causes),
+        &words,
+        rows,
+        warnings,
+    )
 }
 
 /// The record without the samples outside `map`, if --trim is given.
@@ -221,24 +220,21 @@ fn exactly_asked(arguments: &DetectArguments, known: &Known, rows: &mut Rows) {
     }
 }
 
-/// The decision; why there is none, the likeliest cause first; how well the record fits.
-type Verdict<'a> = (Option<Decision>, &'a [Cause], &'a Fit);
-
-/// Prints the answer.
+/// Prints the answer, and after a table what it means in `words`; fails with the causes if there is no decision.
 ///
 /// Implements: CLI-045, CLI-043, CLI-003.
 fn tell(
     arguments: &DetectArguments,
-    known: &Known,
-    verdict: Verdict,
+    (decision, causes): (Option<Decision>, &[Cause]),
+    words: &str,
     mut rows: Rows,
     warnings: Warnings,
 ) -> Result<(), CliError> {
     rows.value("warnings", warnings.0);
-    let table = format!("{}\n{}\n", rows.table(), conclusion(known, verdict));
+    let table = format!("{}\n{words}\n", rows.table());
     let answer = Envelope::new("palpate-detection", 4, rows);
     arguments.format.print(&answer, || table)?;
-    if let (None, causes, _) = verdict {
+    if decision.is_none() {
         let (file, why) = (arguments.traces[0].display(), reasons(causes));
         let message = format!("{file}: cannot be judged: {why}");
         return Err(CliError::Unjudged(message));
@@ -249,7 +245,7 @@ fn tell(
 /// What was decided, whether the record fits, and what was assumed.
 ///
 /// Implements: CLI-043.
-fn conclusion(known: &Known, (decision, causes, fit): Verdict) -> String {
+fn conclusion(known: &Known, decision: Option<Decision>, causes: &[Cause], fit: &Fit) -> String {
     let noise = match fit.limits {
         None => "with the noise estimated from the record",
         Some(_) => "and the record fits the stated noise",
@@ -280,6 +276,48 @@ impl Warnings {
     }
 }
 
+/// The maps without and with an inclusion.
+struct TwoMaps<'a> {
+    reference: ForceMap,
+    inclusion: ForceMap,
+    reference_file: &'a Path,
+    file: &'a Path,
+    any_maps: bool,
+}
+
+impl<'a> TwoMaps<'a> {
+    fn read(arguments: &'a DetectArguments) -> Result<TwoMaps<'a>, CliError> {
+        let files = &arguments.hypotheses;
+        // The parser has refused all but a bank or both maps with a depth.
+        let paths = [&files.reference, &files.inclusion];
+        let [reference_file, file] = paths.map(|path| path.as_deref().unwrap_or(Path::new("")));
+        Ok(TwoMaps {
+            reference: map(reference_file)?,
+            inclusion: map(file)?,
+            reference_file,
+            file,
+            any_maps: files.any_maps,
+        })
+    }
+
+    /// Refuses maps of which one is not the other with an inclusion, or warns of them where they are meant.
+    ///
+    /// Implements: CLI-047.
+    fn hypotheses(&self, warnings: &mut Warnings) -> Result<Hypotheses<'_>, CliError> {
+        let (file, reference) = (self.file.display(), &self.reference);
+        let any = Hypotheses::of_tables(reference.table(), self.inclusion.table());
+        let any = any.map_err(|error| error.in_file(file.to_string()))?;
+        match Hypotheses::new(reference, &self.inclusion) {
+            Ok(hypotheses) => Ok(hypotheses),
+            Err(error) if self.any_maps => {
+                warnings.tell("any_maps", file, &error.to_string());
+                Ok(any)
+            }
+            Err(error) => refuse!("{file}: {error} (or use --any-maps)"),
+        }
+    }
+}
+
 fn map(path: &Path) -> Result<ForceMap, CliError> {
     if path.exists() {
         return Ok(ForceMap::read(path)?);
@@ -289,27 +327,4 @@ fn map(path: &Path) -> Result<ForceMap, CliError> {
         "{}: no such force map; 'palpate solve --phantom none --depths-mm ... --laterals-mm ... --format json' makes one",
         path.display()
     )
-}
-
-/// Refuses maps of which one is not the other with an inclusion, or warns of them where they are meant.
-///
-/// Implements: CLI-047.
-fn hypotheses<'a>(
-    any_maps: bool,
-    file: &Path,
-    reference: &'a ForceMap,
-    inclusion: &'a ForceMap,
-    warnings: &mut Warnings,
-) -> Result<Hypotheses<'a>, CliError> {
-    let file = file.display();
-    let any = Hypotheses::of_tables(reference.table(), inclusion.table());
-    let any = any.map_err(|error| error.in_file(file.to_string()))?;
-    match Hypotheses::new(reference, inclusion) {
-        Ok(hypotheses) => Ok(hypotheses),
-        Err(error) if any_maps => {
-            warnings.tell("any_maps", file, &error.to_string());
-            Ok(any)
-        }
-        Err(error) => refuse!("{file}: {error} (or use --any-maps)"),
-    }
 }

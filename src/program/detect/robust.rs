@@ -1,17 +1,21 @@
 //! `palpate detect` with the robust model, which is the default.
 
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use super::arguments::ModelName;
-use super::{DetectArguments, Warnings, asked, hypotheses, map, reasons, trimmed};
+use super::{DetectArguments, TwoMaps, Warnings, asked, reasons, tell, trimmed};
 use crate::CliError;
 use crate::error::refuse;
-use crate::output::Envelope;
+use crate::output::{note, write};
 use palpate::bank::Bank;
+use palpate::chart::explanation_figure;
 use palpate::detect::Decision;
-use palpate::force_map::{ForceMap, SAME_POSITION};
+use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
-use palpate::robust::{GelChanges, RobustAnswer, RobustQuestion, RobustSweep};
+use palpate::robust::{
+    GelChanges, GelUncertainty, RobustAnswer, RobustPlace, RobustQuestion, RobustSweep,
+};
 use palpate::rows::Rows;
 use palpate::trace::{Correlation, Record};
 
@@ -36,12 +40,13 @@ pub fn check_options(arguments: &DetectArguments) -> Result<(), CliError> {
             arguments.sweep.depth_tolerance.is_some(),
         ),
         ("--simulations", files.simulations.is_some()),
-        ("--figure", files.figure.is_some()),
     ];
     let of_robust = [
         ("--sure", model.sure.is_some()),
         ("--zeroed", model.zeroed),
         ("--together", model.together),
+        ("--reference-sweep", !model.reference_sweeps.is_empty()),
+        ("--gel-uncertainty", model.gel_uncertainty.is_some()),
     ];
     let (options, other) = match model.model {
         ModelName::Robust => (&of_exact[..], "exact"),
@@ -50,9 +55,8 @@ pub fn check_options(arguments: &DetectArguments) -> Result<(), CliError> {
     if let Some((option, _)) = options.iter().find(|(_, is_given)| *is_given) {
         refuse!("{option} needs --model {other}");
     }
-    let sure = model.sure.unwrap_or(SURE);
-    if sure <= 0.5 {
-        refuse!("--sure {sure} must be above 0.5");
+    if model.model == ModelName::Exact && files.figure.is_some() && files.bank.is_none() {
+        refuse!("--figure with --model exact needs --bank");
     }
     if arguments.traces.len() > 1 && !model.together {
         refuse!(
@@ -65,7 +69,7 @@ pub fn check_options(arguments: &DetectArguments) -> Result<(), CliError> {
 
 /// Judges the sweeps of one place.
 ///
-/// Implements: CLI-040, CLI-043, ROB-030, ROB-040.
+/// Implements: CLI-040, CLI-043, ROB-030, ROB-033, ROB-040.
 pub fn detect(arguments: &DetectArguments, records: Vec<Record>) -> Result<(), CliError> {
     let known = arguments.noise.undisturbed()?;
     let noise = arguments.noise.noise()?;
@@ -77,26 +81,30 @@ pub fn detect(arguments: &DetectArguments, records: Vec<Record>) -> Result<(), C
         known: &known,
         is_tared: arguments.model.zeroed,
         noise_sd: noise.sd.map(|sd| sd.map(|sd| sd * longer)),
+        is_white: noise.correlation == Correlation::None,
         prior_h1: arguments.criterion.prior_h1,
         sure: arguments.model.sure.unwrap_or(SURE),
     };
     let mut warnings = Warnings::default();
-    let (answer, mut rows) = match &arguments.hypotheses.bank {
+    let (answer, rows) = match &arguments.hypotheses.bank {
         Some(path) => by_bank(arguments, &question, records, &Bank::read(path)?)?,
         None => by_maps(arguments, &question, records, &mut warnings)?,
     };
-    rows.value("warnings", warnings.0);
-    let table = format!("{}\n{}\n", rows.table(), conclusion(&answer));
-    arguments
-        .format
-        .print(&Envelope::new("palpate-detection", 4, rows), || table)?;
-    if answer.decision.is_none() {
-        let (file, why) = (arguments.traces[0].display(), reasons(&answer.causes));
-        return Err(CliError::Unjudged(format!(
-            "{file}: cannot be judged: {why}"
-        )));
+    let files = arguments
+        .traces
+        .iter()
+        .chain(&arguments.model.reference_sweeps);
+    for (file, replaced) in files
+        .zip(&answer.glitches)
+        .filter(|(_, replaced)| **replaced > 0)
+    {
+        note(
+            file.display(),
+            &format!("samples replaced as glitches: {replaced}"),
+        );
     }
-    Ok(())
+    let verdict = (answer.decision, &answer.causes[..]);
+    tell(arguments, verdict, &conclusion(&answer), rows, warnings)
 }
 
 fn by_maps(
@@ -105,30 +113,13 @@ fn by_maps(
     records: Vec<Record>,
     warnings: &mut Warnings,
 ) -> Result<(RobustAnswer, Rows), CliError> {
-    // The parser has refused all but a bank or both maps with a depth.
-    let (none, files) = (PathBuf::new(), &arguments.hypotheses);
-    let [reference_path, path] =
-        [&files.reference, &files.inclusion].map(|path| path.as_ref().unwrap_or(&none));
-    let (reference, inclusion) = (map(reference_path)?, map(path)?);
-    let tables = hypotheses(files.any_maps, path, &reference, &inclusion, warnings)?;
-    let depths = depths(arguments, records.len(), 0.0)?;
-    let records = all_trimmed(arguments, records, &reference)?;
-    let mut changes: Vec<Option<GelChanges>> = Vec::new();
-    for (at, depth) in depths.iter().enumerate() {
-        let known = depths[..at].iter().position(|of| of == depth);
-        changes.push(match known {
-            Some(same) => changes[same].clone(),
-            None => gel_changes(&reference, *depth)?,
-        });
-    }
-    let sweeps = records.iter().zip(&depths).zip(&changes);
-    let sweeps = sweeps.map(|((record, &depth), changes)| RobustSweep {
-        record,
-        depth,
-        changes: changes.as_ref(),
-    });
-    let answer = question.judge(tables, &sweeps.collect::<Vec<_>>())?;
-    let mut rows = asked(arguments, &depths, &records);
+    let maps = TwoMaps::read(arguments)?;
+    let hypotheses = maps.hypotheses(warnings)?;
+    let depths = depths(arguments, 0.0)?;
+    let sweeps = Sweeps::new(arguments, question, records, &depths, &maps.reference)?;
+    let answer = question.judge(hypotheses, &sweeps.get())?;
+    draw(arguments, &sweeps.records, &answer, None)?;
+    let mut rows = asked(arguments, &depths, &sweeps.records);
     rows.append(answer.rows(None));
     Ok((answer, rows))
 }
@@ -139,27 +130,38 @@ fn by_bank(
     records: Vec<Record>,
     bank: &Bank,
 ) -> Result<(RobustAnswer, Rows), CliError> {
-    let depths = depths(arguments, records.len(), bank.depth())?;
-    if let Some(depth) = depths
-        .iter()
-        .find(|depth| (*depth - bank.depth()).abs() > SAME_POSITION)
-    {
-        let [depth, of_bank] = [*depth, bank.depth()].map(palpate::decimal::mm);
-        refuse!("--depth-mm {depth} is not the bank's; give {of_bank}, or a bank for that depth");
-    }
-    let records = all_trimmed(arguments, records, bank.reference())?;
+    let depths = depths(arguments, bank.depth())?;
+    let mut given = depths.iter().map(|depth| bank.check_depth(*depth));
+    given.try_for_each(|checked| checked)?;
     let prior = arguments.hypotheses.prior.as_ref();
     let prior = prior.map(|file| bank.read_prior(file)).transpose()?;
-    let changes = gel_changes(bank.reference(), bank.depth())?;
-    let all: Vec<&Record> = records.iter().collect();
-    let (answer, place) = question.locate(bank, prior.as_deref(), changes.as_ref(), &all)?;
-    let mut rows = asked(arguments, &depths, &records);
-    rows.append(answer.rows(Some((bank, &place))));
+    let sweeps = Sweeps::new(arguments, question, records, &depths, bank.reference())?;
+    let (answer, place) = question.locate(bank, prior.as_deref(), &sweeps.get())?;
+    let place = Some((bank, &place));
+    draw(arguments, &sweeps.records, &answer, place)?;
+    let mut rows = asked(arguments, &depths, &sweeps.records);
+    rows.append(answer.rows(place));
     Ok((answer, rows))
 }
 
-/// The depth of each sweep, m.
-fn depths(arguments: &DetectArguments, sweeps: usize, of_bank: f64) -> Result<Vec<f64>, CliError> {
+/// Writes the figure, if one is wanted.
+///
+/// Implements: CLI-163.
+fn draw(
+    arguments: &DetectArguments,
+    records: &[Record],
+    answer: &RobustAnswer,
+    place: Option<(&Bank, &RobustPlace)>,
+) -> Result<(), CliError> {
+    if let Some(path) = &arguments.hypotheses.figure {
+        write(path, &explanation_figure(records, answer, place)?)?;
+    }
+    Ok(())
+}
+
+/// The depth of each trace, m.
+fn depths(arguments: &DetectArguments, of_bank: f64) -> Result<Vec<f64>, CliError> {
+    let sweeps = arguments.traces.len();
     match arguments.sweep.depths[..] {
         [] => Ok(vec![of_bank; sweeps]),
         [depth] => Ok(vec![depth; sweeps]),
@@ -171,18 +173,61 @@ fn depths(arguments: &DetectArguments, sweeps: usize, of_bank: f64) -> Result<Ve
     }
 }
 
-fn all_trimmed(
-    arguments: &DetectArguments,
+/// The sweeps of the place, and reference sweeps after them, with the gels beside that of the maps.
+struct Sweeps {
     records: Vec<Record>,
-    map: &ForceMap,
-) -> Result<Vec<Record>, CliError> {
-    let trim = |record| trimmed(arguments, record, map.table());
-    records.into_iter().map(trim).collect()
+    depths: Vec<f64>,
+    /// The number of those of the place.
+    of_place: usize,
+    /// By the bits of the depth.
+    changes: BTreeMap<u64, Option<GelChanges>>,
 }
 
-fn gel_changes(map: &ForceMap, depth: f64) -> Result<Option<GelChanges>, CliError> {
-    let name = map.phantom().map_or("", Phantom::name);
-    GelChanges::new(map, depth).map_err(CliError::fem(name))
+impl Sweeps {
+    fn new(
+        arguments: &DetectArguments,
+        question: &RobustQuestion<'_>,
+        records: Vec<Record>,
+        depths: &[f64],
+        reference: &ForceMap,
+    ) -> Result<Sweeps, CliError> {
+        let file = arguments.model.gel_uncertainty.as_ref();
+        let uncertainty = file.map(|file| GelUncertainty::read(file)).transpose()?;
+        let uncertainty = uncertainty.unwrap_or_default().beside(question.known);
+        let trim = |record| trimmed(arguments, record, reference.table());
+        let records = records
+            .into_iter()
+            .map(trim)
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut changes = BTreeMap::new();
+        for &depth in depths {
+            if let Entry::Vacant(entry) = changes.entry(depth.to_bits()) {
+                let name = reference.phantom().map_or("", Phantom::name);
+                let found = GelChanges::new(reference, depth, &uncertainty);
+                entry.insert(found.map_err(CliError::fem(name))?);
+            }
+        }
+        let mut depths = depths.to_vec();
+        let of_place = depths.len();
+        depths.resize(records.len(), depths[0]);
+        Ok(Sweeps {
+            records,
+            depths,
+            of_place,
+            changes,
+        })
+    }
+
+    fn get(&self) -> Vec<RobustSweep<'_>> {
+        let sweeps = self.records.iter().zip(&self.depths).enumerate();
+        let sweep = |(number, (record, &depth))| RobustSweep {
+            record,
+            depth,
+            changes: self.changes[&depth.to_bits()].as_ref(),
+            is_reference: number >= self.of_place,
+        };
+        sweeps.map(sweep).collect()
+    }
 }
 
 /// What was decided, and what explains the record.
