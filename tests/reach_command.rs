@@ -155,3 +155,38 @@ fn the_figure_shows_both_lines_and_says_them_in_words() {
 fn bad_arguments_are_refused_in_one_line() {
     place().refuses("reach", |words| format!("reach {words}"));
 }
+
+/// A class takes a part of γ, and none more than is left beside an offset of each channel, which is in every class.
+// Verifies: CLI-161, BNK-072.
+#[test]
+fn each_class_of_disturbance_leaves_a_part_of_gamma() {
+    let bank = bank();
+    let noise = "--noise-sd-n 0.05 --samples 161 --known drift,gain,depth";
+    let found = reach(&format!("{noise} --classes"));
+    let rows = found["beside_classes"].as_array().unwrap();
+    let [_, depths, diameters, _] = bank.axes();
+    assert_eq!(rows.len(), diameters.len());
+    for (row, beside) in rows.iter().zip(found["largest_depths"].as_array().unwrap()) {
+        assert_eq!(row["diameter_m"], beside["diameter_m"]);
+        let numbers = |of: &Value| -> Vec<f64> {
+            let list = of.as_array().unwrap().iter();
+            list.map(|number| number.as_f64().unwrap()).collect()
+        };
+        let most = numbers(&beside["unknown"]["gamma"]);
+        let classes = row["classes"].as_array().unwrap();
+        assert_eq!(classes.len(), 19);
+        assert_eq!(classes[0]["class"], "the maps hold");
+        let holds = numbers(&classes[0]["gamma"]);
+        for class in classes {
+            let gamma = numbers(&class["gamma"]);
+            assert_eq!(gamma.len(), depths.len());
+            for ((gamma, most), holds) in gamma.iter().zip(&most).zip(&holds) {
+                assert!(0.0 < *gamma && gamma <= holds && holds < most, "{class}");
+            }
+        }
+    }
+    let table = place().succeed(&format!("reach --bank bank.json {noise} --classes"));
+    assert_has(&table, "gamma, 4.0 mm wide, ");
+    assert_has(&table, "the surface is domed or dished");
+    assert!(reach(noise).get("beside_classes").is_none());
+}

@@ -11,11 +11,13 @@ use super::error::refuse;
 use super::numbers::probability;
 use super::output::{Envelope, write};
 use super::{CliError, Format};
-use palpate::bank::{Bank, Reach, Reached, smallest_diameters};
+use palpate::bank::{Bank, BesideClass, Reach, Reached, smallest_diameters};
 use palpate::chart::reach_figure;
 use palpate::decimal::{kpa, mm};
 use palpate::force::Force;
+use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
+use palpate::robust::{GelChanges, GelUncertainty};
 use palpate::trace::{Unknown, in_words};
 
 /// Arguments of `palpate reach`.
@@ -38,6 +40,9 @@ pub struct ReachArguments {
     /// Quantities to take as known instead of fitting: a list of offset, drift, gain and depth, or 'all' or 'none'
     #[arg(long, value_name = "LIST", value_parser = Known::parse, default_value = "depth")]
     known: Known,
+    /// Adds γ beside each class of disturbance that palpate detect averages over
+    #[arg(long)]
+    classes: bool,
     /// Output format
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
@@ -71,6 +76,17 @@ struct ReachAnswer {
     diameters_m: Vec<f64>,
     largest_depths: Vec<LargestDepth>,
     smallest_diameters: Vec<SmallestDiameter>,
+    /// With --classes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    beside_classes: Vec<BesideClasses>,
+}
+
+/// γ of an inclusion of one diameter and modulus at each depth of the bank, beside each class of disturbance.
+#[derive(Debug, Serialize)]
+struct BesideClasses {
+    diameter_m: f64,
+    youngs_modulus_pa: f64,
+    classes: Vec<BesideClass>,
 }
 
 /// The greatest detectable depth of an inclusion of one diameter and modulus.
@@ -140,6 +156,10 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     let beside = Reach { unknown, ..plain };
     let in_bank = |refusal: Refusal| refusal.in_file(&*asked.bank);
     let gamma_needed = plain.gamma()?;
+    let beside_classes = match arguments.classes {
+        true => beside_classes(&plain)?,
+        false => Vec::new(),
+    };
     let plain = plain.reached().map_err(in_bank)?;
     let beside = beside.reached().map_err(in_bank)?;
     if let Some(path) = &arguments.figure {
@@ -152,12 +172,31 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
         diameters_m: bank.axes()[2].clone(),
         largest_depths: plain.iter().zip(&beside).map(largest).collect(),
         smallest_diameters: smallest(&bank, [&plain, &beside], gamma_needed),
+        beside_classes,
         asked,
     };
     // Writing to a String does not fail.
     let table = answer.render().unwrap_or_default();
     let answer = Envelope::new("palpate-reach", 1, answer);
     arguments.format.print(&answer, || table)
+}
+
+/// Implements: CLI-161.
+fn beside_classes(reach: &Reach<'_>) -> Result<Vec<BesideClasses>, CliError> {
+    let (reference, depth) = (reach.bank.reference(), reach.bank.depth());
+    let changes = GelChanges::new(reference, depth, &GelUncertainty::default());
+    let name = reference.phantom().map_or("", Phantom::name);
+    let found = reach.beside_classes(changes.map_err(CliError::fem(name))?.as_ref())?;
+    let [_, _, diameters, moduli] = reach.bank.axes();
+    let each = moduli
+        .iter()
+        .flat_map(|modulus| diameters.iter().map(move |of| (*of, *modulus)));
+    let row = |((diameter_m, youngs_modulus_pa), classes)| BesideClasses {
+        diameter_m,
+        youngs_modulus_pa,
+        classes,
+    };
+    Ok(each.zip(found).map(row).collect())
 }
 
 /// Implements: CLI-160.
@@ -205,6 +244,14 @@ impl ReachAnswer {
             Some(depth) => format!("{:.2}", 1e3 * depth),
             None => format!("not even at the least depth ({})", mm(self.depths_m[0])),
         }
+    }
+
+    /// Numbers times `scale` in columns of their own.
+    fn columns(numbers: &[f64], scale: f64) -> String {
+        let columns = numbers
+            .iter()
+            .map(|number| format!("{:>9.2}", scale * number));
+        columns.collect()
     }
 
     fn width(&self, found: &Option<f64>) -> String {

@@ -1,13 +1,18 @@
 //! How deep an inclusion may lie, and how small it may be, to be found (the paper's question at the end of its §5).
 
+use serde::Serialize;
+
 use super::Bank;
 use crate::detect::nuisance::Nuisances;
 use crate::force::Force;
 use crate::force_map::ForceMap;
 use crate::refusal::Refusal;
+use crate::robust::{
+    BankHypotheses, Class, GelChanges, RobustDetector, RobustQuestion, RobustSweep,
+};
 use crate::stats::normal;
 use crate::trace::design::{difference, nuisances_of, stacked, whitened};
-use crate::trace::{Unknown, refused};
+use crate::trace::{Record, Unknown, refused};
 
 /// What an inclusion must be found with.
 ///
@@ -45,6 +50,15 @@ pub struct Reached {
     pub is_beyond: bool,
 }
 
+/// γ beside a class of disturbance, at each depth of the bank.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BesideClass {
+    /// The name of the class.
+    pub class: &'static str,
+    /// γ at each depth.
+    pub gamma: Vec<f64>,
+}
+
 impl Reach<'_> {
     /// The γ that is enough: of a search whose false alarms are bounded by the sum over all points of the bank, in noise of a known
     /// level.
@@ -78,18 +92,13 @@ impl Reach<'_> {
         let mut nuisances: Vec<f64> = nuisances.iter().flat_map(|of| white(of)).collect();
         let space = Nuisances::new(&mut nuisances, f0.len()).map_err(refused)?;
         let axes = self.bank.axes();
-        let middle =
-            (0..axes[0].len()).min_by(|&a, &b| axes[0][a].abs().total_cmp(&axes[0][b].abs()));
-        let gamma = |map: usize| -> Result<f64, Refusal> {
-            let f1 = expected(&self.bank.maps()[map], depth)?;
+        let gamma = |map: &usize| -> Result<f64, Refusal> {
+            let f1 = expected(&self.bank.maps()[*map], depth)?;
             Ok(space.project(&mut white(&difference(&f1, &f0))))
         };
-        let [positions, depths, ..] = axes.each_ref().map(Vec::len);
-        let rows = (0..self.bank.maps().len()).step_by(positions * depths);
-        let row = |first: usize| {
-            let at = |depth| gamma(first + depth * positions + middle.unwrap_or(0));
-            let gamma = (0..depths).map(at).collect::<Result<Vec<_>, _>>()?;
-            let [_, _, diameter, modulus] = self.bank.point(first);
+        let row = |maps: Vec<usize>| {
+            let gamma = maps.iter().map(gamma).collect::<Result<Vec<_>, _>>()?;
+            let [_, _, diameter, modulus] = self.bank.point(maps[0]);
             let depth = deepest(&axes[1], &gamma, enough);
             Ok(Reached {
                 diameter,
@@ -99,7 +108,62 @@ impl Reach<'_> {
                 gamma,
             })
         };
-        rows.map(row).collect()
+        self.middle().into_iter().map(row).collect()
+    }
+
+    /// γ beside each class of disturbance of the robust detector: for each diameter and modulus, in the order of [`Reach::reached`], the
+    /// classes, each with γ at each depth of the bank. `changes` are those of the bank's reference at its depth.
+    ///
+    /// # Errors
+    /// Too few samples.
+    ///
+    /// Implements: BNK-072.
+    pub fn beside_classes(
+        &self,
+        changes: Option<&GelChanges>,
+    ) -> Result<Vec<Vec<BesideClass>>, Refusal> {
+        let positions = self.positions();
+        let zeros = vec![0.0; positions.len()];
+        let record = Record::new("sweep", &positions, Force::new(&zeros, &zeros))?;
+        let sweep = RobustSweep {
+            record: &record,
+            depth: self.bank.depth(),
+            changes,
+            is_reference: false,
+        };
+        let question = RobustQuestion {
+            noise_sd: Some(self.noise_sd),
+            ..RobustQuestion::default()
+        };
+        let signals = BankHypotheses::new(self.bank, None).signals(&[sweep])?;
+        let without = self.bank.reference().table();
+        let detector = RobustDetector::new(question, without, &[sweep], &signals)?;
+        let row = |maps: Vec<usize>| {
+            let gammas = maps.iter().map(|&map| detector.gammas(map, self.noise_sd));
+            let by_depth: Vec<_> = gammas.collect();
+            let classes = by_depth[0].iter().enumerate();
+            let at = |class: usize| by_depth.iter().map(|of| of[class].1).collect();
+            let of_class = |(class, (of, _)): (usize, &(Class, f64))| BesideClass {
+                class: of.name,
+                gamma: at(class),
+            };
+            classes.map(of_class).collect()
+        };
+        Ok(self.middle().into_iter().map(row).collect())
+    }
+
+    /// For each diameter and modulus, the diameters first, the map at each depth, at the position nearest to 0.
+    fn middle(&self) -> Vec<Vec<usize>> {
+        let axes = self.bank.axes();
+        let distance = |at: &usize| axes[0][*at].abs();
+        let middle = (0..axes[0].len()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let [positions, depths, ..] = axes.each_ref().map(Vec::len);
+        let firsts = (0..self.bank.maps().len()).step_by(positions * depths);
+        let row = |first: usize| {
+            let at = |depth| first + depth * positions + middle.unwrap_or(0);
+            (0..depths).map(at).collect()
+        };
+        firsts.map(row).collect()
     }
 
     /// Where the samples are, m.
