@@ -32,6 +32,7 @@
 //!     reference: gel.map(&depths, &laterals, &|_| ())?,
 //!     maps: vec![inclusion.map(&depths, &laterals, &|_| ())?],
 //!     measured: vec![],
+//!     changes: None,
 //!     deformed: DeformedMesh::solve(&inclusion, Pose { depth: 4e-3, lateral: 0.0 })?,
 //!     settings: Settings::default(),
 //!     study: None,
@@ -77,6 +78,7 @@ use palpate::fem::mesh::Region;
 use palpate::fem::{FemError, Model, Pose};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
+use palpate::robust::GelChanges;
 
 /// The version of the program.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -90,6 +92,8 @@ pub struct Run {
     pub maps: Vec<ForceMap>,
     /// Measured maps, shown as Figure 7. Any number, any poses; nothing is computed from them.
     pub measured: Vec<ForceMap>,
+    /// What is uncertain of the reference's gel at the depth of the signals; none if that is not shown.
+    pub changes: Option<GelChanges>,
     /// The deformed mesh of one pose (Figure 6).
     pub deformed: DeformedMesh,
     /// What the detector assumes.

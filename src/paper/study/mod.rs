@@ -187,7 +187,7 @@ impl StudyPlan {
                 return Err(Refusal::value(
                     key,
                     format!("{text:?}"),
-                    "a text with letters",
+                    "a text that is not blank",
                 ));
             }
         }

@@ -346,7 +346,7 @@ fn inputs_that_make_no_study_are_refused_with_their_key() {
         ("skin", "input.name = \"skin\" twice"),
         (
             " ",
-            "input[1].name = \" \", but must be a text with letters",
+            "input[1].name = \" \", but must be a text that is not blank",
         ),
     ] {
         begins(refused(&|input| input.name = name.into()), expected);
@@ -358,7 +358,7 @@ fn inputs_that_make_no_study_are_refused_with_their_key() {
     let nowhere = refused(&|input| input.source.clear());
     begins(
         nowhere,
-        "input[1].source = \"\", but must be a text with letters",
+        "input[1].source = \"\", but must be a text that is not blank",
     );
     let (mean, sd) = (1.0, -1.0);
     let normal = refused(&|input| input.distribution = Distribution::Normal { mean, sd });

@@ -68,12 +68,12 @@ fn panel(maps: &Maps<'_>, beside: &[GammaBeside], needed: f64, bars: Vec<Line>) 
 }
 
 fn words(run: &Run, found: &Findings, maps: &Maps<'_>, has_bars: bool) -> Words {
-    // The part of γ that the defaults of `palpate detect` leave.
+    // The part of γ that the defaults of `palpate detect --model exact` leave.
     let felt = maps.iter().filter(|(_, map)| map.gamma.both > 0.0);
     let left = extremes(felt.map(|(_, map)| map.gamma_left.by_default.both / map.gamma.both));
     let left = left.map(|ends| {
         let [least, most] = ends.map(percent);
-        format!(": with offset, drift and gain unknown, the defaults of palpate detect, {least} to {most} of it is left")
+        format!(": with offset, drift and gain unknown, the defaults of palpate detect --model exact, {least} to {most} of it is left")
     });
     let left = left.unwrap_or_default();
     let bars = " Upright bars hold γ with all but the noise known in 95 % of the draws of the uncertain inputs.";

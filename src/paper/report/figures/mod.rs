@@ -10,11 +10,13 @@
 //! | `theory.rs` | Figures 2, 3, 4 and 9: the detector alone |
 //! | `forces.rs` | Figures 5 and 7, and the signals |
 //! | `gamma.rs` | γ of a sweep beside what may be unknown of it |
+//! | `disturbed.rs` | γ of a sweep beside what may disturb it |
 //! | `inputs.rs` | which input counts, by a study |
 //! | `people.rs`, `bridge.rs` | Figures 8 and 10 to 13: Table 1; the forces against it |
 
 mod bands;
 mod bridge;
+mod disturbed;
 mod forces;
 mod gamma;
 mod inputs;
@@ -40,6 +42,7 @@ pub fn figures(run: &Run, findings: &Findings) -> Result<Vec<Figure>, Refusal> {
     plans.extend(forces::figures(run, findings)?);
     plans.extend(theory::figures().map_err(Refusal::because("figures"))?);
     plans.extend(gamma::figure(run, findings));
+    plans.extend(disturbed::figure(run, findings)?);
     plans.extend(inputs::figure(run));
     plans.extend(people::figures(run, &findings.people));
     plans.extend(bridge::figure(findings));

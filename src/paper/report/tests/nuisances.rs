@@ -8,6 +8,7 @@ use crate::tests::measured;
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix};
 use palpate::phantom::Phantom;
+use palpate::robust::{GelChanges, GelUncertainty};
 use palpate_asserts::assert_near;
 
 /// A measured map of the paper's phantom of this name from rows of its lateral and normal force, N, at 2 and 4 mm.
@@ -165,4 +166,60 @@ fn the_figure_shows_every_gamma() {
         assert_eq!(count, 1, "{name}");
     }
     assert!(figure.caption.contains("71.4 % to 71.4 % of it is left"));
+}
+
+/// The heights of a class's dots are those of its numbers, which fall with the peak of the signal and grow with the sweep.
+// Verifies: REP-035, ROB-045.
+#[test]
+fn a_figure_shows_what_disturbances_leave() {
+    let mut run = paper_run();
+    let shown = |run: &Run| {
+        let figures = made(run).figures;
+        figures
+            .into_iter()
+            .find(|of| of.file_name == "disturbed.svg")
+    };
+    assert!(shown(&run).is_none());
+    // Nothing is uncertain of the gel.
+    let changes = GelChanges::new(&run.reference, 4e-3, &GelUncertainty::NONE);
+    run.changes = changes.unwrap();
+    let figure = shown(&run).unwrap();
+    let list = between(&figure.alt, "the deepest inclusion: ", ". A dashed");
+    let rows: Vec<Vec<f64>> = (list.split(';'))
+        .map(|row| {
+            let words = row.split_once(" at ").unwrap().0.replace(" and ", ", ");
+            let numbers = words.split(", ").map(|word| word.trim().parse().unwrap());
+            numbers.collect()
+        })
+        .collect();
+    assert_eq!(rows.len(), 4);
+    for (row, next) in rows.iter().zip(&rows[1..]) {
+        assert!(row.iter().zip(next).all(|(a, b)| a > b), "{list}");
+    }
+    // Every class takes more than that of no disturbance, but for a gel of which all is known; the surface most of those alone.
+    let row = &rows[0];
+    assert_eq!(row[4], row[0]);
+    let others = [1, 2, 3, 5, 6].map(|class| row[class]);
+    assert!(others.iter().all(|gamma| *gamma < row[0]), "{list}");
+    assert!(row[..5].iter().all(|gamma| *gamma > row[5]), "{list}");
+    let svg = Document::parse(&figure.svg).unwrap();
+    let dots = svg.descendants().filter(|node| node.has_tag_name("circle"));
+    let heights: Vec<f64> = dots
+        .map(|dot| dot.attribute("cy").unwrap().parse().unwrap())
+        .collect();
+    // Seven lines over four depths, the key, and seven lines over 8, 10 … 20 mm.
+    assert_eq!(heights.len(), 7 * 4 + 7 * 7 + 7);
+    let [first, last] = [0, 27].map(|at| heights[at]);
+    let numbers = [rows[0][0], rows[3][6]];
+    let scale = (last - first) / (numbers[0] - numbers[1]);
+    for (class, line) in heights[..28].chunks(4).enumerate() {
+        for (row, height) in rows.iter().zip(line) {
+            let off = height - first - scale * (numbers[0] - row[class]);
+            // Numbers are rounded to a tenth.
+            assert!(off.abs() <= 0.11 * scale + 1.5, "{class}: {off}");
+        }
+    }
+    for line in heights[35..].chunks(7) {
+        assert!(line.is_sorted_by(|a, b| a >= b), "{line:?}");
+    }
 }

@@ -155,6 +155,7 @@ pub fn paper_run() -> Run {
         reference: map(Phantom::builtin("none").ok(), &DEPTHS, |_| 0.0, |_| 0.0),
         maps: peaks.map(|(name, peak)| triangle(name, peak)).into(),
         measured: Vec::new(),
+        changes: None,
         deformed: deformed(),
         settings: SETTINGS,
         study: None,

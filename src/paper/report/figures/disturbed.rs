@@ -1,0 +1,175 @@
+//! γ of a sweep beside each class of disturbance of the robust detector.
+
+use super::people::DEPTH;
+use super::plan::{Picture, Plan, Words};
+use crate::report::text::{extremes, fixed, joined, millimetres, trimmed};
+use crate::report::{Findings, Run, Topic, maps::incomparable};
+use palpate::chart::style::{GREY, INK, PALETTE};
+use palpate::chart::{Line, Panel, round_range};
+use palpate::force::Force;
+use palpate::force_map::{ForceMap, Hypotheses};
+use palpate::refusal::Refusal;
+use palpate::robust::{RobustQuestion, RobustSweep};
+use palpate::trace::Record;
+
+/// The noise of a good force sensor, N, and a sample for each so much of the sweep, m.
+const NOISE_SD: f64 = 0.02;
+const STEP: f64 = 0.1e-3;
+/// Of each kind of disturbance the class that is drawn.
+const SHOWN: [&str; 7] = [
+    "the maps hold",
+    "the probe rubs",
+    "the gel relaxes",
+    "the forces are off smoothly by 1.5 %",
+    "the gel is another",
+    "the surface is domed or dished",
+    "several of these at once",
+];
+/// The shortest sweep that is drawn, and the step to the next, mm.
+const SHORTEST: f64 = 8.0;
+const LONGER: f64 = 2.0;
+
+/// γ beside each of [`SHOWN`].
+type Gammas = [f64; SHOWN.len()];
+
+/// The figure, if the top of an inclusion and what is uncertain of the gel are known.
+///
+/// # Errors
+/// A map does not fit the reference.
+///
+/// Implements: REP-035.
+pub fn figure(run: &Run, found: &Findings) -> Result<Option<Plan>, Refusal> {
+    let pairs = run.maps.iter().zip(&found.maps);
+    let pairs = pairs.filter_map(|(map, of)| Some((1e3 * of.inclusion_depth_m?, map)));
+    let mut maps: Vec<_> = pairs.collect();
+    maps.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let laterals = run.reference.table().laterals();
+    let longest = 2e3 * f64::min(-laterals[0], laterals[laterals.len() - 1]);
+    if maps.is_empty() || run.changes.is_none() || longest < SHORTEST {
+        return Ok(None);
+    }
+    let of = |map: &ForceMap, length: f64| gammas(run, map, found.probe_depth_m, length);
+    let by_depth: Result<Vec<_>, Refusal> = maps
+        .iter()
+        .map(|(depth, map)| Ok((*depth, of(map, longest)?)))
+        .collect();
+    let steps = ((longest - SHORTEST) / LONGER) as i32;
+    let lengths = (0..=steps).map(|step| SHORTEST + LONGER * f64::from(step));
+    // The second inclusion from the top, or the only one.
+    let (depth, map) = maps[maps.len().min(2) - 1];
+    let by_length: Result<Vec<_>, Refusal> = lengths
+        .map(|length| Ok((length, of(map, length)?)))
+        .collect();
+    let (by_depth, by_length) = (by_depth?, by_length?);
+    let mut panels = [
+        panel("γ, by depth of the inclusion", DEPTH, &by_depth, found),
+        panel(
+            &format!(
+                "γ, inclusion {} mm deep, by length of the sweep",
+                trimmed(depth, 6)
+            ),
+            "length of the sweep (mm)",
+            &by_length,
+            found,
+        ),
+    ];
+    panels[1]
+        .lines
+        .iter_mut()
+        .for_each(|line| line.name.clear());
+    let words = words(found, longest, depth, &by_depth);
+    let picture = Picture::Panels(panels.into());
+    Ok(Some(Plan::new(
+        "disturbed",
+        Topic::Detection,
+        words,
+        picture,
+    )))
+}
+
+/// γ of the inclusion of `map` in a sweep of a `length`, mm.
+fn gammas(run: &Run, map: &ForceMap, depth: f64, length: f64) -> Result<Gammas, Refusal> {
+    let samples = (1e-3 * length / STEP).round() as i32;
+    let positions: Vec<f64> = (0..=samples)
+        .map(|k| STEP * (f64::from(k) - 0.5 * f64::from(samples)))
+        .collect();
+    let zeros = vec![0.0; positions.len()];
+    let record = Record::new("sweep", &positions, Force::new(&zeros, &zeros))?;
+    let sweep = RobustSweep {
+        record: &record,
+        depth,
+        changes: run.changes.as_ref(),
+        is_reference: false,
+    };
+    let (without, with) = (run.reference.table(), map.table());
+    let hypotheses = Hypotheses::of_tables(without, with).map_err(incomparable(map))?;
+    let noise_sd = Force::new(NOISE_SD, NOISE_SD);
+    let question = RobustQuestion {
+        noise_sd: Some(noise_sd),
+        ..RobustQuestion::default()
+    };
+    let detector = question.detector(hypotheses, &[sweep])?;
+    let found = detector.gammas(0, noise_sd);
+    Ok(SHOWN.map(|name| {
+        let of = found.iter().find(|(class, _)| class.name == name);
+        of.map_or(f64::NAN, |(_, gamma)| *gamma)
+    }))
+}
+
+/// A line for each class, through γ at each x, and one at the γ that is needed.
+fn panel(heading: &str, x_name: &str, found: &[(f64, Gammas)], needs: &Findings) -> Panel {
+    let [least, greatest] = extremes(found.iter().map(|of| of.0)).unwrap_or_default();
+    let x = [least - 0.8, greatest + 0.8];
+    let needed = vec![(x[0], needs.required_gamma), (x[1], needs.required_gamma)];
+    let mut lines = vec![Line::new(GREY, needed).dashed(true).named("needed")];
+    for (class, colour) in [INK]
+        .into_iter()
+        .chain(PALETTE)
+        .take(SHOWN.len())
+        .enumerate()
+    {
+        let points = found
+            .iter()
+            .map(|(x, gammas)| (*x, gammas[class]))
+            .collect();
+        let line = Line::new(colour, points).named(SHOWN[class]);
+        lines.push(line.dotted(4).dashed(class % 2 == 1));
+    }
+    let values = lines.iter().flat_map(|line| &line.points);
+    let y = round_range(values.map(|point| point.1));
+    Panel {
+        x_name: x_name.into(),
+        ..Panel::new(heading, [x, y], 300, lines)
+    }
+}
+
+fn words(found: &Findings, longest: f64, depth: f64, by_depth: &[(f64, Gammas)]) -> Words {
+    let numbers = by_depth.iter().map(|(depth, gammas)| {
+        let gammas = gammas.iter().map(|gamma| fixed(*gamma, 1));
+        format!("{} at {} mm", joined(gammas, ", "), trimmed(*depth, 6))
+    });
+    [
+        format!(
+            "Signal-to-noise ratio γ of a sweep at depth {} mm beside each class of disturbance",
+            millimetres(found.probe_depth_m)
+        ),
+        format!(
+            "What a gel, a motion or a sensor may do to a record takes from γ the part of the signal that it resembles. Each line is the γ \
+             that is left if this class of disturbance is possible and the others are not: palpate detect averages over all of them, \
+             and --known leaves out what is known. Sweeps of {} mm above; of the inclusion {} mm deep below, because a surface or a gel \
+             that is not known needs a sweep that reaches beyond the inclusion. Noise of {} N in every sample, {} samples per mm. The \
+             paper has no such figure.",
+            trimmed(longest, 6),
+            trimmed(depth, 6),
+            trimmed(NOISE_SD, 6),
+            (1e-3 / STEP).round()
+        ),
+        format!(
+            "Two line charts of γ, against the depth of the inclusion and against the length of the sweep, one line for each of these \
+             classes: {}. From the shallowest to the deepest inclusion: {}. A dashed line at {} is what both error rates need.",
+            joined(SHOWN.iter().map(ToString::to_string), "; "),
+            joined(numbers, "; "),
+            fixed(found.required_gamma, 2)
+        ),
+    ]
+}
