@@ -26,14 +26,6 @@ const SAMPLES: usize = 161;
 const DISCS: [f64; 3] = [0.0, 4.6e-3, 6.6e-3];
 /// The standard deviations of the noise, N.
 const NOISE: [f64; 2] = [0.02, 0.1];
-const QUESTION: RobustQuestion = RobustQuestion {
-    known: &[],
-    is_tared: false,
-    noise_sd: None,
-    is_white: false,
-    prior_h1: 0.5,
-    sure: 0.95,
-};
 
 /// A gel with each of the discs.
 type Gel = [ForceTable; 3];
@@ -181,7 +173,13 @@ fn detectors(bank: &Bank) -> [RobustDetector<'static>; 2] {
     let mut disc = signals[map].clone();
     disc.prior = 1.0;
     [&[disc][..], &signals].map(|signals| {
-        RobustDetector::new(QUESTION, bank.reference().table(), &[sweep], signals).unwrap()
+        RobustDetector::new(
+            RobustQuestion::default(),
+            bank.reference().table(),
+            &[sweep],
+            signals,
+        )
+        .unwrap()
     })
 }
 

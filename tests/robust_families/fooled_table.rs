@@ -1,7 +1,7 @@
 //! The table of `docs/how-to/fooled.md`: the share of records that are judged rightly by one sweep and by two, with more and less known.
 
 use super::families::{DEPTH, MOTIONS};
-use super::{Gel, QUESTION, fooled_page, gel, laterals, phantom, positions, recorded};
+use super::{Gel, fooled_page, gel, laterals, phantom, positions, recorded};
 use palpate::detect::Decision;
 use palpate::fem::{Contact, Model};
 use palpate::force::Force;
@@ -83,7 +83,7 @@ impl World {
         let question = RobustQuestion {
             known: &parts,
             noise_sd: (known == Known::Noise).then_some(Force::new(sd, sd)),
-            ..QUESTION
+            ..RobustQuestion::default()
         };
         let last = depths.len() as u64 - 1;
         let records = (0..).zip(depths).map(|(sweep, &depth)| {

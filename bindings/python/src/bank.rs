@@ -89,15 +89,21 @@ fn record(positions_mm: Any, forces_n: Any) -> PyResult<Record> {
     Record::new("record", &positions, forces.force()?).map_err(refused)
 }
 
-/// What is unknown, by name.
-fn unknowns(names: Vec<String>) -> PyResult<Vec<Unknown>> {
-    let unknown = |name: String| {
-        let found = Unknown::ALL.into_iter().find(|of| of.to_string() == name);
-        let expected = Unknown::ALL.map(|of| of.to_string()).join(", ");
-        let expected = format!("one of {expected}");
-        found.ok_or_else(|| refused(Refusal::value("unknown", name, expected)))
+/// Those of `all` that the `names` under a key of Python name.
+fn chosen<T: Copy + ToString>(
+    key: &str,
+    names: Vec<String>,
+    all: impl IntoIterator<Item = T>,
+) -> PyResult<Vec<T>> {
+    let all: Vec<(String, T)> = all.into_iter().map(|of| (of.to_string(), of)).collect();
+    let of_name = |name: String| {
+        let found = all.iter().find(|(known, _)| *known == name);
+        let known: Vec<_> = all.iter().map(|(known, _)| &known[..]).collect();
+        let right = format!("one of {}", known.join(", "));
+        let (_, found) = found.ok_or_else(|| refused(Refusal::value(key, name, right)))?;
+        Ok(*found)
     };
-    names.into_iter().map(unknown).collect()
+    names.into_iter().map(of_name).collect()
 }
 
 /// The criterion of at most one of two rates.
@@ -243,7 +249,7 @@ impl Bank {
     /// channels or (lateral, normal), or None if the record tells. known: what does not disturb the sweep, of smooth, gel, support,
     /// stage, surface, tilt, friction, relaxation and walk. zeroed: whether the sensor was set to zero on the gel. sure: the posterior from
     /// which there is an inclusion. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion. The first call
-    /// computes the gels beside that of the bank, in seconds.
+    /// computes the gels beside that of the bank.
     #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, known=vec![], zeroed=false, sure=0.95, prior=None, prior_h1=0.5),
         text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, known=(), zeroed=False, sure=0.95, prior=None, prior_h1=0.5)")]
     #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
@@ -261,16 +267,10 @@ impl Bank {
     ) -> PyResult<Bound<'py, PyAny>> {
         let record = record(positions_mm, forces_n)?;
         let prior = prior.map(|prior| list("prior", prior, 0)).transpose()?;
-        let part = |name: String| {
-            let found = Part::known().find(|of| of.to_string() == name);
-            let names: Vec<_> = Part::known().map(|of| of.to_string()).collect();
-            let right = || format!("one of {}", names.join(", "));
-            found.ok_or_else(|| refused(Refusal::value("known", name, right())))
-        };
-        let known = known.into_iter().map(part).collect::<PyResult<Vec<_>>>()?;
+        let known = chosen("known", known, Part::known())?;
         let question = RobustQuestion {
             known: &known,
-            is_tared: zeroed,
+            is_zeroed: zeroed,
             noise_sd: noise_sd_n.map(|sd| pair("noise_sd_n", sd)).transpose()?,
             is_white: false,
             prior_h1,
@@ -331,7 +331,7 @@ impl Bank {
             question: Question {
                 depth: self.bank.depth(),
                 depth_tolerance: si("depth_tolerance_mm", depth_tolerance_mm, -3)?,
-                unknown: &unknowns(unknown)?,
+                unknown: &chosen("unknown", unknown, Unknown::ALL)?,
                 noise: Noise { sd, correlation },
                 criterion: criterion(max_miss, max_false_alarm)?,
                 prior_h1,

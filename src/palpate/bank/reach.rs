@@ -135,6 +135,7 @@ impl Reach<'_> {
             noise_sd: Some(self.noise_sd),
             ..RobustQuestion::default()
         };
+        // The first are those of the maps, by their number: without a prior each of them is possible.
         let signals = BankHypotheses::new(self.bank, None).signals(&[sweep])?;
         let without = self.bank.reference().table();
         let detector = RobustDetector::new(question, without, &[sweep], &signals)?;

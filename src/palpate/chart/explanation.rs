@@ -12,7 +12,7 @@ use crate::force::Force;
 use crate::refusal::Refusal;
 use crate::robust::{RobustAnswer, RobustPlace};
 use crate::text::{digits, extremes, trimmed};
-use crate::trace::Record;
+use crate::trace::{Record, reasons};
 
 /// The channels by their numbers.
 const CHANNELS: [&str; 2] = ["Lateral force", "Normal force"];
@@ -75,10 +75,7 @@ pub fn answer_in_words(answer: &RobustAnswer) -> Vec<String> {
     let decided = match answer.decision {
         Some(Decision::Inclusion) => "An inclusion".to_string(),
         Some(Decision::NoInclusion) => "No inclusion".into(),
-        None => {
-            let causes: Vec<_> = answer.causes.iter().map(ToString::to_string).collect();
-            format!("It cannot be judged: {}", causes.join("; "))
-        }
+        None => format!("It cannot be judged: {}", reasons(&answer.causes)),
     };
     let mut caption = vec![format!("{decided}.")];
     if let Some(explanation) = &answer.explanation {

@@ -119,7 +119,7 @@ const GAIN: f64 = 0.3;
 /// The standard deviation of what rounding leaves, as a share of the mean normal force.
 const ROUNDING: f64 = 1e-5;
 /// The offset of a sensor that was set to zero on the gel, N.
-const TARED: f64 = 2.0;
+const ZEROED: f64 = 2.0;
 /// Lengths of smooth parts, over the radius of the probe.
 const SMOOTH: [f64; 2] = [0.38, 0.77];
 const BROAD: [f64; 2] = [0.62, 1.23];
@@ -150,7 +150,7 @@ pub struct Undisturbed {
     pub depth_sd: f64,
     pub radius: f64,
     /// Whether the sensor was set to zero on the gel.
-    pub is_tared: bool,
+    pub is_zeroed: bool,
 }
 
 /// A covariance between the modes of a sweep: Σ of vvᵀ over directions of known size, and a rest.
@@ -275,7 +275,7 @@ impl<'a> Disturbances<'a> {
 
     /// Σ of what may be in every class: offset, drift and gain.
     pub fn always(&self) -> Covariance {
-        let offset = if self.sweep.is_tared { TARED } else { OFFSET };
+        let offset = if self.sweep.is_zeroed { ZEROED } else { OFFSET };
         let both = |size: f64, of: &dyn Fn(usize) -> f64| {
             let scaled = |at: usize| size * of(at);
             [self.channel(true, &scaled), self.channel(false, &scaled)]

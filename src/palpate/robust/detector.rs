@@ -181,7 +181,7 @@ impl<'a> RobustDetector<'a> {
         }
         answer.decision = if answer.posterior >= question.sure {
             Some(Decision::Inclusion)
-        } else if answer.posterior <= 1.0 - question.sure && !question.is_tared {
+        } else if answer.posterior <= 1.0 - question.sure && !question.is_zeroed {
             Some(Decision::NoInclusion)
         } else {
             answer.causes.push(Cause::TooWeak);

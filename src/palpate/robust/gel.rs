@@ -9,7 +9,7 @@ use super::classes::Part;
 use crate::bank::MESH_SIZE;
 use crate::fem::{Contact, FemError, Model};
 use crate::file;
-use crate::force_map::{ForceMap, ForceTable, Source};
+use crate::force_map::{ForceMap, ForceTable};
 use crate::phantom::{Phantom, PhantomParts, Support};
 use crate::refusal::Refusal;
 use crate::trace::Record;
@@ -190,10 +190,8 @@ impl GelChanges {
         let Some(phantom) = reference.phantom().map(Phantom::without_inclusions) else {
             return Ok(None);
         };
-        let mesh_size = match reference.source() {
-            Source::FiniteElements { certificate } => certificate.mesh_size,
-            Source::Measured(_) => MESH_SIZE,
-        };
+        let certificate = reference.certificate();
+        let mesh_size = certificate.map_or(MESH_SIZE, |of| of.mesh_size);
         let mesh_size = f64::max(mesh_size, COARSE * phantom.probe().radius);
         let laterals = thinned(reference.table().laterals());
         let mut sides = sides(&phantom, depth, &laterals, uncertainty);

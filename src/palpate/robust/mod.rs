@@ -50,7 +50,7 @@ pub struct RobustQuestion<'a> {
     /// Disturbances that are not there.
     pub known: &'a [Part],
     /// Whether the sensor was set to zero on the gel.
-    pub is_tared: bool,
+    pub is_zeroed: bool,
     /// The standard deviation of white noise on a sample, N; none if it is to be estimated from the record.
     pub noise_sd: Option<Force<f64>>,
     /// Whether noise that is estimated is white.
@@ -84,7 +84,7 @@ impl Default for RobustQuestion<'_> {
     fn default() -> Self {
         RobustQuestion {
             known: &[],
-            is_tared: false,
+            is_zeroed: false,
             noise_sd: None,
             is_white: false,
             prior_h1: 0.5,

@@ -82,7 +82,7 @@ pub fn prepared(
         travelled: record.travelled(),
         depth_sd: 0.01 * depth_percent * depth,
         radius,
-        is_tared: question.is_tared,
+        is_zeroed: question.is_zeroed,
         forces,
     };
     let forces = modes.of(channels(&undisturbed.forces));
@@ -121,7 +121,7 @@ impl PreparedSweep {
         let glitches = lateral.1 + normal.1;
         let forces = Force::new(lateral.0, normal.0);
         let expected = channels(&self.undisturbed.forces).normal;
-        let level = match question.is_tared {
+        let level = match question.is_zeroed {
             true => 1.0,
             false => level(&forces.normal, expected),
         };

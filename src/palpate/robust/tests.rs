@@ -178,6 +178,22 @@ fn broken_sensors_are_seen_and_coarse_ones_pass() {
     assert_eq!(levels.map(wrong_level), causes);
 }
 
+// Verifies: ROB-047.
+#[test]
+fn what_helps_is_that_of_the_first_part() {
+    for class in CLASSES {
+        let words = match class.name {
+            "the surface is domed or dished" | "the gel is tilted" => "another sweep of the place,",
+            "the gel is another"
+            | "the gel is another, and off smoothly"
+            | "walls or floor are loose"
+            | "several of these at once" => "a reference sweep,",
+            _ => "more sweeps of the place,",
+        };
+        assert!(class.remedy().starts_with(words), "{}", class.name);
+    }
+}
+
 // Verifies: ROB-050.
 #[test]
 fn what_is_known_leaves_the_classes() {
@@ -221,7 +237,7 @@ fn parts_and_classes_are_those_of_the_tables() {
         travelled: positions(samples).iter().map(|x| x + 8e-3).collect(),
         depth_sd: 0.2e-3,
         radius,
-        is_tared: false,
+        is_zeroed: false,
     };
     let of = Disturbances::new(&modes, &sweep);
     // A direction, from its lateral and normal force at u.
@@ -319,15 +335,6 @@ fn what_sweeps_share_is_one_disturbance() {
     assert_eq!(own, DMatrix::from_row_slice(2, 2, &[14.0, 0.0, 0.0, 19.0]));
 }
 
-const QUESTION: RobustQuestion = RobustQuestion {
-    known: &[],
-    is_tared: false,
-    noise_sd: None,
-    is_white: false,
-    prior_h1: 0.5,
-    sure: 0.95,
-};
-
 /// A sweep at the depth of `bank` over the place in question.
 fn at_place<'a>(
     bank: &Bank,
@@ -359,7 +366,7 @@ fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
     let changes = changes.unwrap().unwrap();
     // Each change of the paper's gel is possible in both directions.
     assert_eq!((changes.gel.len(), changes.support.len()), (5, 2));
-    let question = QUESTION;
+    let question = RobustQuestion::default();
     let over = positions(161);
     let record = |map: usize, scale: f64| {
         let table = match map {
@@ -426,13 +433,13 @@ fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
         (None, &[Cause::Narrow][..])
     );
     // A sensor that was set to zero on the gel never says that there is nothing.
-    let tared = RobustQuestion {
-        is_tared: true,
+    let zeroed = RobustQuestion {
+        is_zeroed: true,
         ..question
     };
     let flat = record(usize::MAX, 1.0);
     let sweep = at_place(&bank, &flat, Some(&changes));
-    let (answer, _) = tared.locate(&bank, None, &[sweep]).unwrap();
+    let (answer, _) = zeroed.locate(&bank, None, &[sweep]).unwrap();
     assert_eq!(
         (answer.decision, &answer.causes[..]),
         (None, &[Cause::TooWeak][..])
@@ -526,7 +533,8 @@ fn explained(forces: &dyn Fn(f64) -> [f64; 2]) -> (RobustAnswer, Vec<Force<Vec<f
         is_reference: false,
     });
     let sweeps: Vec<_> = sweeps.collect();
-    let detector = RobustDetector::new(QUESTION, &flat, &sweeps, &[signal]).unwrap();
+    let detector =
+        RobustDetector::new(RobustQuestion::default(), &flat, &sweeps, &[signal]).unwrap();
     let forces: Vec<_> = records.iter().map(Record::forces).collect();
     (detector.judge(&forces).unwrap(), truth)
 }
@@ -583,6 +591,22 @@ fn a_dome_and_a_disc_are_each_explained_to_within_the_noise() {
     // The level is that of the record with the disc, 1.07; the noise leaves 0.02.
     let amplitude = answer.explanation.unwrap().amplitude;
     assert_near(amplitude, 0.8 / answer.levels[0], 0.06);
+}
+
+// Verifies: ROB-031.
+#[test]
+fn among_several_diameters_the_amplitude_is_surer() {
+    let over = Record::new("over", &positions(30), Force::new(&[0.0; 30], &[0.0; 30])).unwrap();
+    for (diameters, expected) in [(vec![6.4e-3], 0.4), (vec![4e-3, 6.4e-3], 0.15)] {
+        let laterals = [-8e-3, 0.0, 8e-3];
+        let mut plan = BankPlan::new(Phantom::builtin("4.6").unwrap(), 4e-3, &laterals).unwrap();
+        plan.mesh_size = 2e-3;
+        plan.diameters = diameters;
+        let bank = plan.bank().unwrap();
+        let sweep = at_place(&bank, &over, None);
+        let signals = BankHypotheses::new(&bank, None).signals(&[sweep]).unwrap();
+        assert!(signals.iter().all(|signal| signal.amplitude_sd == expected));
+    }
 }
 
 // Verifies: ROB-020.
@@ -643,7 +667,9 @@ fn a_reference_sweep_tells_of_the_gel_and_a_light_one_of_the_surface() {
             amplitude_sd: 0.4,
             prior: 1.0,
         };
-        let detector = RobustDetector::new(QUESTION, none.table(), sweeps, &[signal]).unwrap();
+        let detector =
+            RobustDetector::new(RobustQuestion::default(), none.table(), sweeps, &[signal])
+                .unwrap();
         let gammas = detector.gammas(0, Force::new(0.02, 0.02));
         gammas.iter().find(|(of, _)| of.name == class).unwrap().1
     };

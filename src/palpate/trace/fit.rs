@@ -113,6 +113,12 @@ impl fmt::Display for Cause {
     }
 }
 
+/// The causes why a record cannot be judged, in words.
+pub fn reasons(causes: &[Cause]) -> String {
+    let causes: Vec<_> = causes.iter().map(Cause::to_string).collect();
+    causes.join("; ")
+}
+
 impl Fit {
     /// How well `white`, the parts of `record` over the standard deviations `noise_sd`, fits.
     ///

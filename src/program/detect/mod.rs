@@ -19,7 +19,7 @@ use palpate::detect::Decision;
 use palpate::force_map::{ForceMap, ForceTable, Hypotheses};
 use palpate::refusal::one_line;
 use palpate::rows::Rows;
-use palpate::trace::{Cause, Fit, Motion, Question, Record, Trace, Unknown, in_words};
+use palpate::trace::{Cause, Fit, Motion, Question, Record, Trace, Unknown, in_words, reasons};
 
 /// The largest error of the depth that is assumed, m.
 const DEPTH_TOLERANCE: f64 = 0.3e-3;
@@ -64,17 +64,11 @@ fn by_maps(arguments: &DetectArguments, record: Record) -> Result<(), CliError> 
     let known = arguments.noise.known()?;
     let question = question(arguments, &known, depth, table, file, &mut warnings)?;
     let found = question.judge(maps.hypotheses(&mut warnings)?, &record)?;
-    let mut rows = asked(arguments, &[depth], &[record]);
-    exactly_asked(arguments, &known, &mut rows);
+    let mut rows = exactly_asked(arguments, &known, depth, record);
     rows.append(found.rows());
     let words = conclusion(&known, found.decision, &found.causes, &found.fit);
-    tell(
-        arguments,
-        (found.decision, &found.causes),
-        &words,
-        rows,
-        warnings,
-    )
+    let verdict = (found.decision, &found.causes[..]);
+    tell(arguments, verdict, &words, rows, warnings)
 }
 
 /// Searches the record for any inclusion of a bank.
@@ -99,17 +93,11 @@ fn by_bank(arguments: &DetectArguments, record: Record, path: &Path) -> Result<(
     if let Some(path) = &files.figure {
         write(path, &place_figure(&bank, &found.place)?)?;
     }
-    let mut rows = asked(arguments, &[depth], &[record]);
-    exactly_asked(arguments, &known, &mut rows);
+    let mut rows = exactly_asked(arguments, &known, depth, record);
     rows.append(found.rows(&bank)?);
     let words = conclusion(&known, found.decision, &found.causes, &found.fit);
-    tell(
-        arguments,
-        (found.decision, &found.causes),
-        &words,
-        rows,
-        warnings,
-    )
+    let verdict = (found.decision, &found.causes[..]);
+    tell(arguments, verdict, &words, rows, warnings)
 }
 
 /// The record without the samples outside `map`, if --trim is given.
@@ -206,7 +194,8 @@ fn asked(arguments: &DetectArguments, depths: &[f64], records: &[Record]) -> Row
 }
 
 /// What was asked of the exact model.
-fn exactly_asked(arguments: &DetectArguments, known: &Known, rows: &mut Rows) {
+fn exactly_asked(arguments: &DetectArguments, known: &Known, depth: f64, record: Record) -> Rows {
+    let mut rows = asked(arguments, &[depth], &[record]);
     rows.value("model", "exact");
     rows.value("depth_tolerance_m", depth_tolerance(arguments));
     rows.value("unknown", json!(known.unknown));
@@ -218,6 +207,7 @@ fn exactly_asked(arguments: &DetectArguments, known: &Known, rows: &mut Rows) {
     ] {
         rate.into_iter().for_each(|rate| rows.value(key, rate));
     }
+    rows
 }
 
 /// Prints the answer, and after a table what it means in `words`; fails with the causes if there is no decision.
@@ -257,11 +247,6 @@ fn conclusion(known: &Known, decision: Option<Decision>, causes: &[Cause], fit: 
     };
     let [known, fitted] = [&known.known, &known.unknown].map(|names| in_words(names));
     format!("{decided}. Known: {known}. Fitted: {fitted}.")
-}
-
-fn reasons(causes: &[Cause]) -> String {
-    let causes: Vec<_> = causes.iter().map(Cause::to_string).collect();
-    causes.join("; ")
 }
 
 /// The codes of the warnings.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 use super::arguments::ModelName;
-use super::{DetectArguments, TwoMaps, Warnings, asked, reasons, tell, trimmed};
+use super::{DetectArguments, TwoMaps, Warnings, asked, tell, trimmed};
 use crate::CliError;
 use crate::error::refuse;
 use crate::output::{note, write};
@@ -17,10 +17,7 @@ use palpate::robust::{
     GelChanges, GelUncertainty, RobustAnswer, RobustPlace, RobustQuestion, RobustSweep,
 };
 use palpate::rows::Rows;
-use palpate::trace::{Correlation, Record};
-
-/// The posterior from which an answer is sure, unless another is asked for.
-const SURE: f64 = 0.95;
+use palpate::trace::{Correlation, Record, reasons};
 
 /// Refuses options of the other model.
 ///
@@ -77,13 +74,14 @@ pub fn detect(arguments: &DetectArguments, records: Vec<Record>) -> Result<(), C
         Correlation::Known(length) => length.sqrt(),
         Correlation::None | Correlation::OfRecord => 1.0,
     };
+    let default = RobustQuestion::default();
     let question = RobustQuestion {
         known: &known,
-        is_tared: arguments.model.zeroed,
+        is_zeroed: arguments.model.zeroed,
         noise_sd: noise.sd.map(|sd| sd.map(|sd| sd * longer)),
         is_white: noise.correlation == Correlation::None,
         prior_h1: arguments.criterion.prior_h1,
-        sure: arguments.model.sure.unwrap_or(SURE),
+        sure: arguments.model.sure.unwrap_or(default.sure),
     };
     let mut warnings = Warnings::default();
     let (answer, rows) = match &arguments.hypotheses.bank {

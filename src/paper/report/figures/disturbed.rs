@@ -1,11 +1,11 @@
 //! γ of a sweep beside each class of disturbance of the robust detector.
 
+use super::gamma;
 use super::people::DEPTH;
 use super::plan::{Picture, Plan, Words};
-use crate::report::text::{extremes, fixed, joined, millimetres, trimmed};
+use crate::report::text::{fixed, joined, millimetres, trimmed};
 use crate::report::{Findings, Run, Topic, maps::incomparable};
-use palpate::chart::style::{GREY, INK, PALETTE};
-use palpate::chart::{Line, Panel, round_range};
+use palpate::chart::Panel;
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, Hypotheses};
 use palpate::refusal::Refusal;
@@ -61,8 +61,9 @@ pub fn figure(run: &Run, found: &Findings) -> Result<Option<Plan>, Refusal> {
         .map(|length| Ok((length, of(map, length)?)))
         .collect();
     let (by_depth, by_length) = (by_depth?, by_length?);
+    let needed = found.required_gamma;
     let mut panels = [
-        panel("γ, by depth of the inclusion", DEPTH, &by_depth, found),
+        panel("γ, by depth of the inclusion", DEPTH, &by_depth, needed),
         panel(
             &format!(
                 "γ, inclusion {} mm deep, by length of the sweep",
@@ -70,7 +71,7 @@ pub fn figure(run: &Run, found: &Findings) -> Result<Option<Plan>, Refusal> {
             ),
             "length of the sweep (mm)",
             &by_length,
-            found,
+            needed,
         ),
     ];
     panels[1]
@@ -116,30 +117,16 @@ fn gammas(run: &Run, map: &ForceMap, depth: f64, length: f64) -> Result<Gammas, 
     }))
 }
 
-/// A line for each class, through γ at each x, and one at the γ that is needed.
-fn panel(heading: &str, x_name: &str, found: &[(f64, Gammas)], needs: &Findings) -> Panel {
-    let [least, greatest] = extremes(found.iter().map(|of| of.0)).unwrap_or_default();
-    let x = [least - 0.8, greatest + 0.8];
-    let needed = vec![(x[0], needs.required_gamma), (x[1], needs.required_gamma)];
-    let mut lines = vec![Line::new(GREY, needed).dashed(true).named("needed")];
-    for (class, colour) in [INK]
-        .into_iter()
-        .chain(PALETTE)
-        .take(SHOWN.len())
-        .enumerate()
-    {
-        let points = found
-            .iter()
-            .map(|(x, gammas)| (*x, gammas[class]))
-            .collect();
-        let line = Line::new(colour, points).named(SHOWN[class]);
-        lines.push(line.dotted(4).dashed(class % 2 == 1));
-    }
-    let values = lines.iter().flat_map(|line| &line.points);
-    let y = round_range(values.map(|point| point.1));
+/// A line for each class.
+fn panel(heading: &str, x_name: &str, found: &[(f64, Gammas)], needed: f64) -> Panel {
+    let left = SHOWN.iter().enumerate().map(|(class, name)| {
+        let points = found.iter().map(|(x, gammas)| (*x, gammas[class]));
+        (name.to_string(), points.collect())
+    });
     Panel {
         x_name: x_name.into(),
-        ..Panel::new(heading, [x, y], 300, lines)
+        height: 300,
+        ..gamma::gammas(heading, needed, left, |class| class % 2 == 1)
     }
 }
 

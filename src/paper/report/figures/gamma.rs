@@ -40,31 +40,49 @@ type Maps<'a> = [(f64, &'a MapFindings)];
 
 /// A line for each list of what is unknown, which is that of every map; those that run close to another in dashes; and `bars`.
 fn panel(maps: &Maps<'_>, beside: &[GammaBeside], needed: f64, bars: Vec<Line>) -> Panel {
-    let mut ticks: Vec<_> = maps.iter().map(|of| of.0).collect();
-    let [least, greatest] = extremes(ticks.iter().copied()).unwrap_or_default();
-    let x = [least - 0.8, greatest + 0.8];
-    // No number on the one before.
-    ticks.dedup_by(|next, tick| *next - *tick < 0.12 * (x[1] - x[0]));
-    let needed = vec![(x[0], needed), (x[1], needed)];
-    let mut lines = vec![Line::new(GREY, needed).dashed(true).named("needed")];
-    let colours = [INK].into_iter().chain(PALETTE);
-    for (k, (of, colour)) in beside.iter().zip(colours).enumerate() {
+    let left = |(k, of): (usize, &GammaBeside)| {
         let gammas = maps.iter().filter_map(|(depth, map)| {
             let of = map.gamma_left.beside.get(k)?;
             Some((*depth, of.gamma))
         });
         // All of the line before, and one more.
         let name = of.words().replace("offset, drift, gain, ", "these and ");
-        let line = Line::new(colour, gammas.collect()).named(name);
-        lines.push(line.dotted(4).dashed([3, 4].contains(&k)));
-    }
-    lines.extend(bars);
-    let values = lines.iter().flat_map(|line| &line.points);
-    let y = round_range(values.map(|point| point.1));
-    Panel {
-        ticks,
-        ..Panel::new("γ if this is unknown", [x, y], 330, lines)
-    }
+        (name, gammas.collect())
+    };
+    let left = beside.iter().enumerate().map(left);
+    let mut panel = gammas("γ if this is unknown", needed, left, |k| {
+        [3, 4].contains(&k)
+    });
+    panel.lines.extend(bars);
+    let values = panel.lines.iter().flat_map(|line| &line.points);
+    panel.y = round_range(values.map(|point| point.1));
+    panel.ticks = maps.iter().map(|of| of.0).collect();
+    // No number on the one before.
+    let [from, to] = panel.x;
+    (panel.ticks).dedup_by(|next, tick| *next - *tick < 0.12 * (to - from));
+    panel
+}
+
+/// A line with its name through what is left of γ at each x, over one at the γ that is needed.
+pub fn gammas(
+    heading: &str,
+    needed: f64,
+    left: impl Iterator<Item = (String, Vec<(f64, f64)>)>,
+    is_dashed: impl Fn(usize) -> bool,
+) -> Panel {
+    let colours = [INK].into_iter().chain(PALETTE);
+    let line = |(k, ((name, gammas), colour))| {
+        let line = Line::new(colour, gammas).named(name);
+        line.dotted(4).dashed(is_dashed(k))
+    };
+    let mut lines: Vec<_> = left.zip(colours).enumerate().map(line).collect();
+    let points = || lines.iter().flat_map(|line| &line.points);
+    let [least, greatest] = extremes(points().map(|point| point.0)).unwrap_or_default();
+    let y = round_range(points().map(|point| point.1).chain([needed]));
+    let x = [least - 0.8, greatest + 0.8];
+    let needed = x.map(|end| (end, needed)).into();
+    lines.insert(0, Line::new(GREY, needed).dashed(true).named("needed"));
+    Panel::new(heading, [x, y], 330, lines)
 }
 
 fn words(run: &Run, found: &Findings, maps: &Maps<'_>, has_bars: bool) -> Words {
