@@ -335,6 +335,19 @@ typedef struct {
   double gamma;
 } PalpateThetaGamma;
 
+// ln of the densities of a record in coloured noise, without their factor (2π)^(−n/2), alone and with a signal whose amplitude is
+// normal with mean 1.
+typedef struct {
+  // Without the signal.
+  double without;
+  // With it.
+  double with;
+  // The square of the Mahalanobis distance of the record, without the signal.
+  double distance_without;
+  // The same with it.
+  double distance_with;
+} PalpateColouredEvidence;
+
 // What a whitened record says beside nuisances.
 typedef struct {
   // T, over the estimate of the noise where its level is unknown.
@@ -536,7 +549,7 @@ PalpateError palpate_theta(const PalpateSeries *observed,
                            const PalpateComponents *noise_sd,
                            PalpateStatistic *statistic);
 
-// The length of the scratch that `palpate_theta_coloured` needs: n² + 2n.
+// The length of the scratch that `palpate_theta_coloured` and `palpate_evidence_coloured` need: n² + 2n.
 size_t palpate_coloured_scratch(size_t n);
 
 // θ and γ in noise of any covariance over both channels. `residual` and `template` have n numbers, the lateral samples and then
@@ -548,6 +561,17 @@ PalpateError palpate_theta_coloured(const double *residual,
                                     double *scratch,
                                     size_t scratch_length,
                                     PalpateThetaGamma *found);
+
+// ln of the densities of a record without, and with a signal whose amplitude has a standard deviation of `amplitude_sd` about 1. The
+// others are those of `palpate_theta_coloured`; `covariance` holds a class of disturbance, the noise and the signal's uncertain shape.
+PalpateError palpate_evidence_coloured(const double *residual,
+                                       const double *template_,
+                                       const double *covariance,
+                                       size_t n,
+                                       double amplitude_sd,
+                                       double *scratch,
+                                       size_t scratch_length,
+                                       PalpateColouredEvidence *found);
 
 // T, γ, θ and rates of error of a whitened record of `samples` numbers beside `count` nuisances, one after the other.
 //

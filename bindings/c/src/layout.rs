@@ -28,6 +28,7 @@ layout! {
     Filter { b, sigma, gamma }
     Statistic { y, theta, gamma }
     ThetaGamma { theta, gamma }
+    ColouredEvidence { without, with, distance_without, distance_with }
     SubspaceStatistic { t, gamma, gamma_nominal, residual, theta, rates, rank, degrees }
     ScanMaximum { theta, gamma, shift, refined_shift }
     Tails { lower, upper }

@@ -3,8 +3,8 @@
 //! Implements: CLB-003, CLB-010.
 
 pub use palpate_core::detect::Statistic;
-pub use palpate_core::detect::coloured::ColouredStatistic;
-use palpate_core::detect::coloured::{coloured_scratch, theta_coloured};
+pub use palpate_core::detect::coloured::{ColouredEvidence, ColouredStatistic};
+use palpate_core::detect::coloured::{coloured_scratch, evidence_coloured, theta_coloured};
 use palpate_core::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
 use palpate_core::detect::scan::Scan;
 pub use palpate_core::detect::scan::ScanMaximum;
@@ -90,7 +90,7 @@ pub unsafe extern "C" fn palpate_theta(
     unsafe { give(statistic, found) }
 }
 
-/// The length of the scratch that `palpate_theta_coloured` needs: n² + 2n.
+/// The length of the scratch that `palpate_theta_coloured` and `palpate_evidence_coloured` need: n² + 2n.
 #[unsafe(no_mangle)]
 pub extern "C" fn palpate_coloured_scratch(n: usize) -> usize {
     coloured_scratch(n)
@@ -109,21 +109,65 @@ pub unsafe extern "C" fn palpate_theta_coloured(
     found: *mut ColouredStatistic,
 ) -> Error {
     let statistic = || {
-        let square = n.checked_mul(n).ok_or(Error::Length)?;
-        check_apart(
-            &[bytes(scratch, scratch_length)],
-            &[
-                bytes(residual, n),
-                bytes(template, n),
-                bytes(covariance, square),
-            ],
-        )?;
-        let (residual, template) = unsafe { (list(residual, n)?, list(template, n)?) };
-        let covariance = unsafe { list(covariance, square) }?;
-        let scratch = unsafe { list_mut(scratch, scratch_length) }?;
+        let scratch = (scratch, scratch_length);
+        let [residual, template, covariance] =
+            unsafe { coloured(residual, template, covariance, n, scratch) }?;
+        let scratch = unsafe { list_mut(scratch.0, scratch.1) }?;
         Ok(theta_coloured(residual, template, covariance, scratch)?)
     };
     unsafe { give(found, statistic) }
+}
+
+/// ln of the densities of a record without, and with a signal whose amplitude has a standard deviation of `amplitude_sd` about 1. The
+/// others are those of `palpate_theta_coloured`; `covariance` holds a class of disturbance, the noise and the signal's uncertain shape.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn palpate_evidence_coloured(
+    residual: *const f64,
+    template: *const f64,
+    covariance: *const f64,
+    n: usize,
+    amplitude_sd: f64,
+    scratch: *mut f64,
+    scratch_length: usize,
+    found: *mut ColouredEvidence,
+) -> Error {
+    let evidence = || {
+        let scratch = (scratch, scratch_length);
+        let [residual, template, covariance] =
+            unsafe { coloured(residual, template, covariance, n, scratch) }?;
+        let scratch = unsafe { list_mut(scratch.0, scratch.1) }?;
+        let sd = amplitude_sd;
+        Ok(evidence_coloured(
+            residual, template, covariance, sd, scratch,
+        )?)
+    };
+    unsafe { give(found, evidence) }
+}
+
+/// A residual and a template of n numbers and their covariance, none of which overlaps the scratch.
+unsafe fn coloured<'a>(
+    residual: *const f64,
+    template: *const f64,
+    covariance: *const f64,
+    n: usize,
+    (scratch, length): (*mut f64, usize),
+) -> Result<[&'a [f64]; 3], Error> {
+    let square = n.checked_mul(n).ok_or(Error::Length)?;
+    check_apart(
+        &[bytes(scratch, length)],
+        &[
+            bytes(residual, n),
+            bytes(template, n),
+            bytes(covariance, square),
+        ],
+    )?;
+    Ok(unsafe {
+        [
+            list(residual, n)?,
+            list(template, n)?,
+            list(covariance, square)?,
+        ]
+    })
 }
 
 /// What a whitened record says beside nuisances.

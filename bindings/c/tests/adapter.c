@@ -218,6 +218,63 @@ static json_t *theta_colored(void) {
     return json_pack("{sf sf}", "theta", found.theta, "gamma", found.gamma);
 }
 
+/* The logarithm of a sum, by the logarithms of its terms. */
+static double log_sum(double a, double b) {
+    double low = fmin(a, b), high = fmax(a, b);
+    return low == -INFINITY ? high : high + log1p(exp(low - high));
+}
+
+static double positive(double value) {
+    if (!(value > 0)) refuse("out_of_range", "a number that must be above 0 is not");
+    return value;
+}
+
+/* The evidence of each class and signal, averaged as spec/oracle.md says. */
+static json_t *robust_evidence(void) {
+    const double shape_share = 0.15, amplitude_sd = 0.4;
+    json_t *y, *r, *w, *c, *s, *rho, *pi, *b;
+    ARGUMENTS("{so so so so so so so so}", "record", &y, "noise", &r, "weights", &w, "covariances", &c, "signals", &s, "sizes", &rho,
+              "prior", &pi, "shape", &b);
+    size_t n = length_of(y), classes = length_of(w), signals = length_of(rho), length = palpate_coloured_scratch(n);
+    if (n > 200 || classes > 100 || signals > 1000) refuse("out_of_range", "too many modes, classes or signals");
+    if (n * classes * signals == 0 || length_of(c) != classes * n || length_of(s) != signals || length_of(b) != n)
+        refuse("bad_argument", "no modes, classes or signals, or not a row for each");
+    const double *record = numbers(y, n), *noise = numbers(r, n), *weight = numbers(w, classes), *shape = rows(b, n);
+    const double *covariances = rows(c, n), *means = rows(s, n), *size = numbers(rho, signals), *prior = numbers(pi, signals);
+    double *sum = take(n * n, sizeof(double)), *scratch = take(length, sizeof(double)), *with = take(signals, sizeof(double));
+    double whole = 0, total = 0, low = INFINITY, high = -INFINITY, totals[2] = {-INFINITY, -INFINITY}, best = -INFINITY, distance = 0;
+    for (size_t i = 0; i < n; i++) positive(noise[i]);
+    for (size_t k = 0; k < classes; k++) whole += positive(weight[k]);
+    for (size_t k = 0; k < signals; k++) {
+        if (prior[k] < 0) refuse("out_of_range", "a prior is below 0");
+        total += prior[k], with[k] = -INFINITY;
+        low = fmin(low, log(positive(size[k]))), high = fmax(high, log(size[k]));
+    }
+    if (fabs(total - 1) > 1e-9) refuse("out_of_range", "the priors do not add up to 1");
+    double step = fmax((high - low) / 7, 1e-3);
+    double *without = take(classes, sizeof(double)), *by_class = take(classes, sizeof(double));
+    for (size_t class = 0; class < classes; class++) {
+        double log_weight = log(weight[class] / whole), any = -INFINITY;
+        for (size_t k = 0; k < signals; k++) {
+            PalpateColouredEvidence found;
+            for (int beside = 0; beside < 2; beside++) { /* Without the signal its shape is not uncertain. */
+                double share = beside * shape_share * exp(low + step * round((log(size[k]) - low) / step));
+                for (size_t i = 0; i < n * n; i++) sum[i] = covariances[class * n * n + i] + share * share * shape[i];
+                for (size_t i = 0; i < n; i++) sum[i * n + i] += noise[i];
+                check(palpate_evidence_coloured(record, means + k * n, sum, n, amplitude_sd, scratch, length, &found));
+                double density = log_weight + (beside ? found.with : found.without);
+                if (density > best) best = density, distance = beside ? found.distance_with : found.distance_without;
+                if (!beside) without[class] = density;
+                else with[k] = log_sum(with[k], density), any = log_sum(any, density + log(prior[k]));
+            }
+        }
+        by_class[class] = any;
+        totals[0] = log_sum(totals[0], without[class]), totals[1] = log_sum(totals[1], any);
+    }
+    return json_pack("{so so so sf sf}", "without", list_of(without, classes), "by_class", list_of(by_class, classes), "with",
+                     list_of(with, signals), "theta", totals[1] - totals[0], "distance", distance);
+}
+
 static json_t *theta_nuisances(void) {
     json_t *r, *t, *others;
     const char *level;
@@ -337,7 +394,7 @@ static json_t *report_encode(void) {
 static const struct {
     const char *op;
     json_t *(*function)(void);
-} others[] = {OTHER(roc), OTHER(noise_budget), OTHER(matched_filter), OTHER(theta), OTHER(theta_colored), OTHER(theta_nuisances),
+} others[] = {OTHER(roc), OTHER(noise_budget), OTHER(matched_filter), OTHER(theta), OTHER(theta_colored), OTHER(theta_nuisances), OTHER(robust_evidence),
               OTHER(scan), OTHER(servo_axis), OTHER(servo_interpolate), OTHER(report_decode), OTHER(report_encode)};
 
 static json_t *plain_op(size_t number) {

@@ -65,6 +65,9 @@ static void records(void) {
     covariance[1] = covariance[2] = 2;
     expect("definite", palpate_theta_coloured(zero, signal, covariance, 2, scratch, 8, &pair), PALPATE_ERROR_NOT_POSITIVE_DEFINITE);
     expect("scratch", palpate_theta_coloured(zero, signal, covariance, 2, scratch, 7, &pair), PALPATE_ERROR_LENGTH);
+    PalpateColouredEvidence evidence;
+    expect("amplitude", palpate_evidence_coloured(zero, signal, covariance, 2, -1, scratch, 8, &evidence), PALPATE_ERROR_OUT_OF_RANGE);
+    expect("evidence over input", palpate_evidence_coloured(zero, scratch, covariance, 2, 1, scratch, 8, &evidence), PALPATE_ERROR_OVERLAP);
     expect("scratch over input", palpate_theta_coloured(zero, scratch, covariance, 2, scratch, 8, &pair), PALPATE_ERROR_OVERLAP);
 
     PalpateSubspaceStatistic statistic;

@@ -3,7 +3,7 @@
 
 use super::DetectError;
 use crate::stats::compensated::{self, DoubleDouble};
-use crate::stats::error::{check_length, check_samples, representable};
+use crate::stats::error::{check_length, check_samples, in_range, representable};
 
 /// What a record in coloured noise says.
 #[repr(C)]
@@ -16,7 +16,43 @@ pub struct ColouredStatistic {
     pub gamma: f64,
 }
 
-/// Length of the scratch that [`theta_coloured`] needs for a covariance of `order` rows.
+/// ln of the densities of a record in coloured noise, without their factor (2π)^(−n/2), alone and with a signal whose amplitude is
+/// normal with mean 1.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ColouredEvidence {
+    /// Without the signal.
+    pub without: f64,
+    /// With it.
+    pub with: f64,
+    /// The square of the Mahalanobis distance of the record, without the signal.
+    pub distance_without: f64,
+    /// The same with it.
+    pub distance_with: f64,
+}
+
+impl ColouredEvidence {
+    /// The evidence by what whitening leaves: ln of the determinant of L, the `energy` of the record and of the signal and their product, and
+    /// the standard deviation of the amplitude.
+    ///
+    /// Implements: DET-048.
+    pub fn of_white(log_det: f64, energy: [f64; 2], cross: f64, amplitude_sd: f64) -> Self {
+        let [record, signal] = energy;
+        // With the record less the signal, z, and the determinant's factor 1 + a²|L⁻¹Δ|².
+        let (left, along) = (record - 2.0 * cross + signal, cross - signal);
+        let variance = amplitude_sd * amplitude_sd;
+        let grown = 1.0 + variance * signal;
+        let distance_with = left - variance * along * along / grown;
+        ColouredEvidence {
+            without: -0.5 * record - log_det,
+            with: -log_det - 0.5 * (distance_with + libm::log(grown)),
+            distance_without: record,
+            distance_with,
+        }
+    }
+}
+
+/// Length of the scratch that [`theta_coloured`] and [`evidence_coloured`] need for a covariance of `order` rows.
 ///
 /// Implements: DET-046.
 pub const fn coloured_scratch(order: usize) -> usize {
@@ -50,6 +86,55 @@ pub fn theta_coloured(
     covariance: &[f64],
     scratch: &mut [f64],
 ) -> Result<ColouredStatistic, DetectError> {
+    let [_, residual, template] = whitened(residual, template, covariance, scratch)?;
+    let energy = compensated::dot(template, template, 1.0);
+    let cross = compensated::dot(residual, template, 1.0);
+    Ok(ColouredStatistic {
+        theta: representable("theta", cross.plus(energy.scaled(-0.5)).value())?,
+        gamma: representable("gamma", libm::sqrt(energy.value()))?,
+    })
+}
+
+/// The evidence of a record for a signal of uncertain amplitude in one class of disturbance. The arguments are those of
+/// [`theta_coloured`], with a covariance that holds the disturbance, the noise and what is uncertain of the signal's shape, and the
+/// standard deviation of the amplitude.
+///
+/// # Errors
+/// As [`theta_coloured`]; an `amplitude_sd` below 0.
+///
+/// Implements: DET-005, DET-046, DET-048.
+pub fn evidence_coloured(
+    residual: &[f64],
+    template: &[f64],
+    covariance: &[f64],
+    amplitude_sd: f64,
+    scratch: &mut [f64],
+) -> Result<ColouredEvidence, DetectError> {
+    in_range(
+        amplitude_sd >= 0.0,
+        "amplitude_sd",
+        amplitude_sd,
+        "at least 0",
+    )?;
+    let [factor, residual, template] = whitened(residual, template, covariance, scratch)?;
+    let diagonal = factor.iter().step_by(template.len() + 1);
+    let log_det = diagonal.map(|root| libm::log(*root)).sum();
+    let dot = |a: &[f64], b: &[f64]| compensated::dot(a, b, 1.0).value();
+    let energy = [dot(residual, residual), dot(template, template)];
+    let cross = dot(residual, template);
+    let found = ColouredEvidence::of_white(log_det, energy, cross, amplitude_sd);
+    representable("without", found.without)?;
+    representable("with", found.with)?;
+    Ok(found)
+}
+
+/// L of the covariance, L⁻¹ of the residual and of the template, in `scratch`.
+fn whitened<'a>(
+    residual: &[f64],
+    template: &[f64],
+    covariance: &[f64],
+    scratch: &'a mut [f64],
+) -> Result<[&'a [f64]; 3], DetectError> {
     let order = template.len();
     check_samples("template", template, order)?;
     check_samples("residual", residual, order)?;
@@ -59,12 +144,7 @@ pub fn theta_coloured(
     let (white_template, white_residual) = vectors.split_at_mut(order);
     whiten(factor, template, white_template);
     whiten(factor, residual, white_residual);
-    let energy = compensated::dot(white_template, white_template, 1.0);
-    let cross = compensated::dot(white_residual, white_template, 1.0);
-    Ok(ColouredStatistic {
-        theta: representable("theta", cross.plus(energy.scaled(-0.5)).value())?,
-        gamma: representable("gamma", libm::sqrt(energy.value()))?,
-    })
+    Ok([factor, white_residual, white_template])
 }
 
 /// The Cholesky factor L of a covariance K = LLᵀ of `order` rows, row by row; what lies above the diagonal is not used.

@@ -2,6 +2,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
+use crate::detect::coloured::ColouredEvidence;
+
 /// The shape is off by this share of the signal's root mean square.
 pub const SHAPE: f64 = 0.15;
 /// Different sizes of the shape's error, of which the nearest stands for that of a hypothesis.
@@ -56,7 +58,7 @@ impl Evidence {
 struct Factor {
     cholesky: Cholesky<f64, Dyn>,
     white: DVector<f64>,
-    log_density: f64,
+    log_det: f64,
 }
 
 impl Factor {
@@ -65,30 +67,23 @@ impl Factor {
         let mut white = record.clone();
         cholesky.l_dirty().solve_lower_triangular_mut(&mut white);
         let diagonal = cholesky.l_dirty().diagonal();
-        let log_det: f64 = diagonal.iter().map(|root| libm::log(*root)).sum();
-        let log_density = -0.5 * white.norm_squared() - log_det;
+        let log_det = diagonal.iter().map(|root| libm::log(*root)).sum();
         Some(Factor {
             cholesky,
             white,
-            log_density,
+            log_det,
         })
     }
 
-    /// ln of the density of the record with a signal of uncertain amplitude, and the distance squared.
-    fn with(&self, signal: &Signal) -> (f64, f64) {
+    /// The evidence of the record for a signal of uncertain amplitude.
+    fn with(&self, signal: &Signal) -> ColouredEvidence {
         let mut along = signal.mean.clone();
         self.cholesky
             .l_dirty()
             .solve_lower_triangular_mut(&mut along);
-        let (square, cross) = (along.norm_squared(), along.dot(&self.white));
-        // z = white − along, and (1 + a²|along|²) is the determinant's factor.
-        let variance = signal.amplitude_sd * signal.amplitude_sd;
-        let left = self.white.norm_squared() - 2.0 * cross + square;
-        let projected = cross - square;
-        let grown = 1.0 + variance * square;
-        let distance = left - variance * projected * projected / grown;
-        let log_det = self.log_density + 0.5 * self.white.norm_squared();
-        (log_det - 0.5 * (distance + libm::log(grown)), distance)
+        let energy = [self.white.norm_squared(), along.norm_squared()];
+        let cross = along.dot(&self.white);
+        ColouredEvidence::of_white(self.log_det, energy, cross, signal.amplitude_sd)
     }
 }
 
@@ -115,9 +110,11 @@ pub fn evidence(
             covariance[(at, at)] += variance;
         }
         let none = Factor::new(covariance.clone(), record)?;
-        without.push(weight + none.log_density);
-        if none.log_density + weight > best.0 {
-            best = (none.log_density + weight, none.white.norm_squared());
+        let distance = none.white.norm_squared();
+        let density = weight - 0.5 * distance - none.log_det;
+        without.push(density);
+        if density > best.0 {
+            best = (density, distance);
         }
         let factor = |size: &f64| {
             let share = SHAPE * size;
@@ -126,10 +123,10 @@ pub fn evidence(
         let factors = sizes.iter().map(factor).collect::<Option<Vec<_>>>()?;
         let mut any = f64::NEG_INFINITY;
         for ((signal, of), with) in signals.iter().zip(&nearest).zip(&mut with) {
-            let (density, distance) = factors[*of].with(signal);
-            let density = density + weight;
+            let found = factors[*of].with(signal);
+            let density = found.with + weight;
             if density > best.0 {
-                best = (density, distance);
+                best = (density, found.distance_with);
             }
             *with = log_sum(*with, density);
             any = log_sum(any, density + signal.log_prior);

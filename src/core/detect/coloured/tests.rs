@@ -225,3 +225,37 @@ fn asymmetry_counts_beyond_what_rounding_explains() {
         }
     }
 }
+
+// Verifies: DET-048, DET-005.
+#[test]
+fn the_evidence_is_that_of_either_whole_covariance() {
+    let (record, signal, covariance) = ([1.0, -0.5], [0.75, 2.0], [2.0, 0.5, 0.5, 1.0]);
+    let scratch = &mut [0.0; coloured_scratch(2)];
+    // ln of the density of y with covariance (a, b; b, c), by the inverse in closed form, and its distance squared.
+    let density = |[x, y]: [f64; 2], [a, b, c]: [f64; 3]| {
+        let determinant = a * c - b * b;
+        let distance = (c * x * x - 2.0 * b * x * y + a * y * y) / determinant;
+        [-0.5 * (distance + determinant.ln()), distance]
+    };
+    for sd in [0.0, 0.4, 3.0] {
+        let found = evidence_coloured(&record, &signal, &covariance, sd, scratch).unwrap();
+        let more = |i: usize, j: usize| sd * sd * signal[i] * signal[j];
+        let without = density(record, [2.0, 0.5, 1.0]);
+        let whole = [2.0 + more(0, 0), 0.5 + more(0, 1), 1.0 + more(1, 1)];
+        let with = density([record[0] - signal[0], record[1] - signal[1]], whole);
+        let found_all = [
+            [found.without, found.distance_without],
+            [found.with, found.distance_with],
+        ];
+        for (found, expected) in found_all
+            .iter()
+            .flatten()
+            .zip([without, with].as_flattened())
+        {
+            assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+        }
+    }
+    for sd in [-0.1, f64::NAN, f64::INFINITY] {
+        assert!(evidence_coloured(&record, &signal, &covariance, sd, scratch).is_err());
+    }
+}
