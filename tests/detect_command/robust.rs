@@ -174,23 +174,43 @@ fn a_figure_shows_the_record_beside_what_explains_it() {
     assert_eq!(alone.matches("<circle").count(), 33 * 2 + 2);
 }
 
-// Verifies: ROB-020, ROB-033, ROB-046, ROB-047, ROB-002, CLI-140.
+// Verifies: ROB-020, ROB-033, ROB-046, ROB-047, ROB-002, CLI-140, CLI-045.
 #[test]
 fn what_is_known_of_the_gel_makes_an_answer_surer() {
     place().write("gel.toml", "height_percent = 0\nsupport_percent = 0");
     let known = "--depth-mm 3 --known smooth,surface,stage,tilt,friction,relaxation,walk";
-    let theta = |more: &str| {
-        let (found, _) = answer(&format!("with.csv {MAPS} {known} {more}"));
-        found["theta"].as_f64().unwrap()
-    };
-    let alone = theta("");
-    for more in [
-        "--gel-uncertainty gel.toml",
-        "--reference-sweep without.csv",
+    let found = |more: &str| answer(&format!("with.csv {MAPS} {known} {more}")).0;
+    let theta = |found: &Value| found["theta"].as_f64().unwrap();
+    let alone = theta(&found(""));
+    for (more, key, file) in [
+        (
+            "--gel-uncertainty gel.toml",
+            "gel_uncertainty",
+            json!("gel.toml"),
+        ),
+        (
+            "--reference-sweep without.csv",
+            "reference_sweeps",
+            json!(["without.csv"]),
+        ),
     ] {
-        let known = theta(more);
+        let found = found(more);
+        let known = theta(&found);
         assert!(known > alone + 1.0, "{more}: {known}, alone {alone}");
+        assert_eq!((&found[key], &found["samples"]), (&file, &json!(33)));
     }
+    let found = found("--sure 0.9 --zeroed");
+    let asked = ["known", "sure", "zeroed", "reference_sweeps"].map(|key| found[key].clone());
+    let parts = [
+        "smooth",
+        "stage",
+        "surface",
+        "tilt",
+        "friction",
+        "relaxation",
+        "walk",
+    ];
+    assert_eq!(json!(asked), json!([parts, 0.9, true, []]));
     // What would help a weak record; and one glitch, which is replaced and told.
     let rows = std::fs::read_to_string(place().at("without.csv")).unwrap();
     let mut lines: Vec<_> = rows.lines().map(String::from).collect();

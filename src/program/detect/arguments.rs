@@ -135,8 +135,8 @@ pub(super) struct NoiseArguments {
     /// 'none' of them
     #[arg(long, value_name = "LIST")]
     known: Option<String>,
-    /// Correlation of the noise: auto (estimated from the record), white (independent samples), or a file with a sweep without
-    /// contact, from which correlation and standard deviation are estimated
+    /// Correlation of the noise: auto (estimated from the record; --model exact refuses a record that has it), white (independent
+    /// samples), or a file with a sweep without contact, from which correlation and standard deviation are estimated
     #[arg(long, value_name = "auto|white|FILE", default_value = "auto")]
     pub noise: String,
     #[command(flatten)]

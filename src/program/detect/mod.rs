@@ -158,10 +158,13 @@ fn depth(arguments: &DetectArguments) -> Result<Option<f64>, CliError> {
     }
 }
 
-/// What was asked of any model.
+/// What was asked of any model; `records` begin with those of the traces.
+///
+/// Implements: CLI-045.
 fn asked(arguments: &DetectArguments, depths: &[f64], records: &[Record]) -> Rows {
     let mut rows = Rows::default();
     let path = |path: &Path| path.display().to_string();
+    let records = &records[..arguments.traces.len()];
     match (&arguments.traces[..], depths, records) {
         ([trace], [depth], [record]) => {
             rows.value("trace", path(trace));
@@ -185,6 +188,7 @@ fn asked(arguments: &DetectArguments, depths: &[f64], records: &[Record]) -> Row
         ("inclusion", &files.inclusion),
         ("bank", &files.bank),
         ("prior", &files.prior),
+        ("gel_uncertainty", &arguments.model.gel_uncertainty),
     ] {
         file.iter().for_each(|file| rows.value(key, path(file)));
     }

@@ -8,6 +8,8 @@ use super::{DetectArguments, TwoMaps, Warnings, asked, tell, trimmed};
 use crate::CliError;
 use crate::error::refuse;
 use crate::output::{note, write};
+use serde_json::json;
+
 use palpate::bank::Bank;
 use palpate::chart::explanation_figure;
 use palpate::detect::Decision;
@@ -117,7 +119,7 @@ fn by_maps(
     let sweeps = Sweeps::new(arguments, question, records, &depths, &maps.reference)?;
     let answer = question.judge(hypotheses, &sweeps.get())?;
     draw(arguments, &sweeps.records, &answer, None)?;
-    let mut rows = asked(arguments, &depths, &sweeps.records);
+    let mut rows = robustly_asked(arguments, question, &depths, &sweeps.records);
     rows.append(answer.rows(None));
     Ok((answer, rows))
 }
@@ -137,9 +139,26 @@ fn by_bank(
     let (answer, place) = question.locate(bank, prior.as_deref(), &sweeps.get())?;
     let place = Some((bank, &place));
     draw(arguments, &sweeps.records, &answer, place)?;
-    let mut rows = asked(arguments, &depths, &sweeps.records);
+    let mut rows = robustly_asked(arguments, question, &depths, &sweeps.records);
     rows.append(answer.rows(place));
     Ok((answer, rows))
+}
+
+/// What was asked of the robust model.
+fn robustly_asked(
+    arguments: &DetectArguments,
+    question: &RobustQuestion<'_>,
+    depths: &[f64],
+    records: &[Record],
+) -> Rows {
+    let mut rows = asked(arguments, depths, records);
+    let files = arguments.model.reference_sweeps.iter();
+    let files: Vec<_> = files.map(|file| file.display().to_string()).collect();
+    rows.value("reference_sweeps", files);
+    rows.value("known", json!(question.known));
+    rows.value("sure", question.sure);
+    rows.value("zeroed", question.is_zeroed);
+    rows
 }
 
 /// Writes the figure, if one is wanted.
