@@ -21,7 +21,6 @@ mod playback_command;
 mod program;
 mod psychophysics_command;
 mod reach_command;
-mod real_records;
 mod report_page;
 mod robust_families;
 mod run_command;

@@ -142,11 +142,6 @@ impl Rows {
         self.value("chi_square_limits", fit.limits.map(Vec::from));
         self.value("degrees", fit.degrees);
         self.value("whiteness", fit.whiteness);
-        self.value("block", fit.block);
-        let samples = fit.effective_samples;
-        let label = "effective samples, both channels";
-        self.shown("effective_samples", label, samples, format!("{samples:.0}"));
-        self.number("level", "force level / reference map", fit.level);
     }
 }
 

@@ -300,7 +300,7 @@ impl Bank {
     ///
     /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N. noise_sd_n: of a sample in N, one for both
     /// channels or (lateral, normal), or None if the record tells. unknown: what is fitted, of offset, drift, gain, depth and variance.
-    /// white: whether all samples are independent; if not, the record tells. The decision is for the fewest errors, or keeps
+    /// white: do not test the record for correlated noise. The decision is for the fewest errors, or keeps
     /// max_miss or max_false_alarm. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion.
     #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, unknown=vec!["offset".into(), "drift".into(), "gain".into(),
         "variance".into()], white=false, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5),

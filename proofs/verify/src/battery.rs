@@ -24,7 +24,7 @@ pub(crate) const GROUPS: &[(&str, &str, &[&str])] = groups! {
     "moving_average_" ["DET-040", "DET-041"] "Noise of a moving average is whitened."
     "generator_" ["DET-111", "DET-110"] "Deviates are standard normal, with their tails, and independent."
     "position_error" ["DET-053", "DET-054"] "Position errors meet the bound of Cramér and Rao until the signal is too weak."
-    "nuisance_t_" ["NUI-001", "NUI-003", "NUI-016", "TRC-077"]
+    "nuisance_t_" ["NUI-001", "NUI-003", "NUI-016"]
         "T beside offsets, drifts and a gain of any size is normal with standard deviation 1."
     "nuisance_residual_" ["NUI-003", "NUI-016", "DET-130"] "What neither the nuisances nor the template explain is χ²."
     "nuisance_errors_" ["NUI-008", "NUI-014", "NUI-013"]

@@ -1,5 +1,4 @@
-//! Samples that are not independent: sensors with a low pass, values that were held or interpolated. Means over blocks that are
-//! longer than the correlation are nearly independent again, whatever the cause (batch means).
+//! Samples that are not independent: sensors with a low pass, values that were held or interpolated.
 
 use super::DetectError;
 use crate::stats::compensated;
@@ -56,16 +55,6 @@ pub fn correlation_length(series: &[f64]) -> f64 {
         }
     }
     length.max(1.0)
-}
-
-/// The sums over blocks of `length` samples, over √length, so that white noise keeps its standard deviation. What is left behind the
-/// last whole block is not used.
-///
-/// Implements: NUI-021.
-pub fn block_sums(series: &[f64], length: usize) -> impl Iterator<Item = f64> {
-    let scale = 1.0 / libm::sqrt(length.max(1) as f64);
-    let blocks = series.chunks_exact(length.max(1));
-    blocks.map(move |block| scale * block.iter().sum::<f64>())
 }
 
 #[cfg(test)]

@@ -385,16 +385,6 @@ impl SubspaceTest {
         Ok(ErrorRates { false_alarm, miss })
     }
 
-    /// The probability that without an inclusion T is this far below 0, or farther.
-    ///
-    /// # Errors
-    /// None but for a T or bias of no law.
-    ///
-    /// Implements: NUI-014.
-    pub fn opposite(&self) -> Result<f64, DetectError> {
-        self.noise_above(-self.t - self.bias)
-    }
-
     /// Pr(T − hγ ≥ x).
     fn noise_above(&self, x: f64) -> Result<f64, DetectError> {
         match self.degrees {

@@ -11,7 +11,7 @@ use crate::detect::{Decision, DetectError, decide, map_threshold, posterior};
 use crate::force::Force;
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
-use crate::trace::design::{Design, blocked, difference, expected, squares, whitened};
+use crate::trace::design::{Design, difference, expected, squares, whitened};
 use crate::trace::{Cause, Criterion, Fit, Question, Record, refused};
 
 /// A search for the inclusion of a bank in records.
@@ -34,7 +34,7 @@ pub struct BankSearch<'a> {
 pub struct Location {
     /// Ĥ; none if the record cannot be judged.
     pub decision: Option<Decision>,
-    /// Why not, the likeliest cause first.
+    /// Why not.
     pub causes: Vec<Cause>,
     /// The likeliest point of the bank, in the order of [`super::Parameter::ALL`].
     pub point: [f64; 4],
@@ -98,30 +98,29 @@ impl BankSearch<'_> {
             // First where it probably lies, which does not depend on the level of the noise, so that its signal is not taken for noise.
             let noise_sd = question.noise.sd.unwrap_or(Force::new(1.0, 1.0));
             let mut white = design.whitened(noise_sd);
-            let detector = self.detector(&white, &signals, noise_sd, 1, NoiseLevel::Known)?;
+            let detector = self.detector(&white, &signals, noise_sd, NoiseLevel::Known)?;
             let statistic = detector.statistic(&mut white.residual).map_err(refused)?;
             let at = detector.place(&statistic).estimate;
             let sample = |map: usize, sample: usize| signals[map][sample];
             design.template = signal_at(self.bank.axes(), at, signals[0].len(), sample);
-            let (white, fit, mut blocks) = question.fitted(&design).map_err(refused)?;
-            let level = question.noise_level(&fit);
-            let detector = self.detector(&blocks, &signals, fit.noise_sd, fit.block, level)?;
-            self.judge(&detector, &mut blocks.residual, &white, fit)
+            let (mut white, fit) = question.fitted(&design).map_err(refused)?;
+            let level = question.noise_level();
+            let detector = self.detector(&white, &signals, fit.noise_sd, level)?;
+            self.judge(&detector, &mut white, fit)
         };
         located().map_err(|refusal: Refusal| refusal.in_file(record.file()))
     }
 
-    /// The detector of the `signals` of all maps, N, beside the nuisances of a record whose parts over `noise_sd` and in blocks are
+    /// The detector of the `signals` of all maps, N, beside the nuisances of a record whose parts over `noise_sd` are
     /// `white`.
     fn detector(
         &self,
         white: &Design,
         signals: &[Vec<f64>],
         noise_sd: Force<f64>,
-        block: usize,
         level: NoiseLevel,
     ) -> Result<BankDetector, Refusal> {
-        let template = |signal: &Vec<f64>| blocked(&whitened(signal, noise_sd), block);
+        let template = |signal: &Vec<f64>| whitened(signal, noise_sd);
         let uniform = vec![1.0 / signals.len() as f64; signals.len()];
         let detector = BankDetector::new(
             self.bank.axes(),
@@ -138,12 +137,11 @@ impl BankSearch<'_> {
     fn judge(
         &self,
         detector: &BankDetector,
-        residual: &mut [f64],
-        white: &Design,
+        white: &mut Design,
         fit: Fit,
     ) -> Result<Location, Refusal> {
         let judged = || {
-            let statistic = detector.statistic(residual)?;
+            let statistic = detector.statistic(&mut white.residual)?;
             let likeliest = detector.likeliest(&statistic);
             let tests = detector.tests(&statistic)?;
             let test = detector.test(&statistic, likeliest);
@@ -158,7 +156,7 @@ impl BankSearch<'_> {
                 (test.theta(), eta)
             };
             let decision = decide(decisive, eta)?;
-            let causes = fit.causes(&test)?;
+            let causes = fit.causes();
             let place = detector.place(&statistic);
             Ok(Location {
                 decision: causes.is_empty().then_some(decision),

@@ -6,7 +6,6 @@ use serde::Serialize;
 
 use super::{Question, Record};
 use crate::detect::DetectError;
-use crate::detect::correlation::block_sums;
 use crate::detect::nuisance::{DEPENDENT, Nuisances, SubspaceDetector};
 use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION};
@@ -140,11 +139,6 @@ impl Design {
         self.map(|part| whitened(part, noise_sd))
     }
 
-    /// The sums over blocks of so many samples.
-    pub fn blocks(&self, length: usize) -> Design {
-        self.map(|part| blocked(part, length))
-    }
-
     /// What the depth may add to T at most.
     ///
     /// Implements: TRC-064.
@@ -197,16 +191,6 @@ impl Design {
         check_positive("noise_sd_normal_n", sd.normal)?;
         Ok(sd)
     }
-
-    /// Σ F_p F_0 / Σ F_0² of whitened parts; none if its standard deviation is above 0.1.
-    ///
-    /// Implements: TRC-070.
-    pub fn level(&self) -> Option<f64> {
-        let square = squares(&self.reference);
-        let pairs = self.reference.iter().zip(&self.residual);
-        let cross: f64 = pairs.map(|(a, b)| a * b).sum();
-        (square >= 100.0).then(|| 1.0 + cross / square)
-    }
 }
 
 /// The lateral samples and then the normal ones.
@@ -226,13 +210,6 @@ pub fn expected(record: &Record, map: &ForceTable, depth: f64) -> Result<Vec<f64
 pub(crate) fn channels(stacked: &[f64]) -> Force<&[f64]> {
     let (lateral, normal) = stacked.split_at(stacked.len() / 2);
     Force::new(lateral, normal)
-}
-
-/// The sums over blocks of so many samples of each channel.
-pub(crate) fn blocked(stacked: &[f64], length: usize) -> Vec<f64> {
-    let Force { lateral, normal } = channels(stacked);
-    let sums = block_sums(lateral, length).chain(block_sums(normal, length));
-    sums.collect()
 }
 
 /// Σ of the squares.

@@ -68,7 +68,7 @@ pub enum Correlation {
 pub struct Judgement {
     /// Ĥ; none if the record cannot be judged.
     pub decision: Option<Decision>,
-    /// Why not, the likeliest cause first.
+    /// Why not.
     pub causes: Vec<Cause>,
     /// T with its law, where there is one.
     pub test: SubspaceTest,
@@ -89,26 +89,23 @@ impl Question<'_> {
         self.unknown.contains(&what)
     }
 
-    /// Sums over blocks have a noise of their own, whatever a sample has.
-    pub(crate) fn noise_level(&self, fit: &Fit) -> NoiseLevel {
-        if self.is_unknown(Unknown::Variance) || fit.block > 1 {
+    pub(crate) fn noise_level(&self) -> NoiseLevel {
+        if self.is_unknown(Unknown::Variance) {
             NoiseLevel::Unknown
         } else {
             NoiseLevel::Known
         }
     }
 
-    /// The parts of a design over the noise of a sample, how well they fit, and their sums over blocks of samples that depend on
-    /// one another.
-    pub(crate) fn fitted(&self, design: &Design) -> Result<(Design, Fit, Design), DetectError> {
+    /// The parts of a design over the noise of a sample, and how well they fit.
+    pub(crate) fn fitted(&self, design: &Design) -> Result<(Design, Fit), DetectError> {
         let noise_sd = match self.noise.sd {
             Some(sd) => sd,
             None => design.noise_sd()?,
         };
         let white = design.whitened(noise_sd);
         let fit = Fit::new(self, &white, noise_sd)?;
-        let blocks = white.blocks(fit.block);
-        Ok((white, fit, blocks))
+        Ok((white, fit))
     }
 
     /// Judges `record` for the inclusion of one map, where that map has it.
@@ -117,20 +114,20 @@ impl Question<'_> {
     /// Positions or a depth outside the maps; maps that do not differ at the samples but by what is unknown; whatever the
     /// detector refuses.
     ///
-    /// Implements: TRC-008, TRC-065, TRC-060, TRC-077, CLI-043, CLI-049.
+    /// Implements: TRC-008, TRC-065, TRC-060, CLI-043, CLI-049.
     pub fn judge(&self, hypotheses: Hypotheses<'_>, record: &Record) -> Result<Judgement, Refusal> {
         let mut design = Design::new(self, hypotheses.without(), record)?;
         design.set_template(self, hypotheses.with(), record)?;
         design.add_depth_error(self, hypotheses.with(), record)?;
         let judged = || {
-            let (white, fit, blocks) = self.fitted(&design)?;
-            let (mut signals, mut template) = (blocks.signals(false), blocks.template.clone());
+            let (white, fit) = self.fitted(&design)?;
+            let (mut signals, mut template) = (white.signals(false), white.template.clone());
             let nuisances = Nuisances::new(&mut signals, template.len())?;
             let detector = SubspaceDetector::new(nuisances, &mut template)?;
-            let statistic = detector.statistic(&mut blocks.residual.clone())?;
-            let test = statistic.test(self.noise_level(&fit), blocks.bias(&detector))?;
+            let statistic = detector.statistic(&mut white.residual.clone())?;
+            let test = statistic.test(self.noise_level(), white.bias(&detector))?;
             let threshold = self.threshold(&test)?;
-            let causes = fit.causes(&test)?;
+            let causes = fit.causes();
             Ok(Judgement {
                 decision: causes.is_empty().then(|| threshold.decide(test.t)),
                 causes,

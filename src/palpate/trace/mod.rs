@@ -55,7 +55,7 @@ mod tests;
 use std::path::Path;
 
 pub use design::{Unknown, in_words, nuisances};
-pub use fit::{Cause, Fit, MISFIT_RATE, WHITENESS, reasons};
+pub use fit::{Cause, Fit, MISFIT_RATE, reasons};
 pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
 
 use crate::csv::{Column, Rows};

@@ -62,7 +62,7 @@ pub fn beside_nuisances(draw: &mut Draw) -> Result<impl Debug, DetectError> {
             test.false_alarm_threshold(rate)?,
             test.miss_threshold(rate)?,
         ];
-        Ok::<_, DetectError>((test, test.theta(), rates, thresholds, test.opposite()?))
+        Ok::<_, DetectError>((test, test.theta(), rates, thresholds))
     });
     Ok((statistic, tested))
 }

@@ -49,12 +49,3 @@ fn the_length_of_a_correlation() {
     assert_eq!(correlation_length(&[1.0, -1.0, 1.0, -1.0]), 1.0);
     assert_eq!(correlation_length(&[]), 1.0);
 }
-
-// Verifies: NUI-021.
-#[test]
-fn sums_over_blocks() {
-    let sums = block_sums(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 100.0], 4);
-    assert!(sums.eq([5.0, 13.0]));
-    assert!(block_sums(&[1.0, 2.0], 1).eq([1.0, 2.0]));
-    assert_eq!(block_sums(&[1.0], 2).count(), 0);
-}

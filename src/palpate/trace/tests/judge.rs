@@ -1,9 +1,7 @@
 //! Records judged at a known position. Expected values: NumPy's QR of the same signals, SciPy's laws of t.
 
-use super::super::design::{Design, channels};
 use super::*;
 use crate::detect::Decision;
-use crate::detect::correlation::correlation_length;
 use crate::detect::nuisance::Threshold;
 use crate::force_map::tests::table_of;
 use crate::stats::random::Generator;
@@ -168,11 +166,10 @@ fn what_is_unknown_is_fitted_by_least_squares() {
         signal.map(|signal| 0.8 * signal[0]).into_array()
     });
     let white = noise(Some(STATED), Correlation::None);
-    let blocks = noise(Some(STATED), Correlation::Known(1.7));
     let of_the_record = noise(None, Correlation::None);
     // What is unknown, the tolerance of the depth (m) and the noise; χ² and its degrees, T, γ, θ, threshold and rate of misses.
     #[rustfmt::skip]
-    let cases: [(&[Unknown], _, _, _); 7] = [
+    let cases: [(&[Unknown], _, _, _); 6] = [
         (&[Offset], 0.0, white,
             "799.4244995614722 319 5.824996501068192 9.915940204836977 8.597381925025607 2.0537489106318225 1.8873548914461486e-15"),
         (&[Offset, Drift, Gain], 0.0, white,
@@ -185,8 +182,6 @@ fn what_is_unknown_is_fitted_by_least_squares() {
             "384.5330530254016 316 5.712772308095997 7.047367719173405 14.687372168873093 2.0622612001565277 5.11354167711858e-7"),
         (&[Offset, Drift, Gain, Depth, Variance], 0.0, of_the_record,
             "314.9999862721934 315 5.431020422293289 6.727327051309264 13.30191441728586 2.0622883327535564 2.283796350787377e-6"),
-        (&[Offset, Drift, Gain], 0.1e-3, blocks,
-            "384.5330530254016 316 6.839988560372772 7.913838846268948 13.659872024495744 2.351795236466693 5.1279382140775336e-6"),
     ];
     for (unknown, depth_tolerance, noise, expected) in cases {
         let question = Question {
@@ -207,12 +202,11 @@ fn what_is_unknown_is_fitted_by_least_squares() {
             close(found, expected.parse().unwrap());
         }
         close(found.rates.false_alarm, 0.02);
-        let [gamma, level] = match noise.sd {
-            Some(_) => [11.669211961222613, 0.8209638396640837],
-            None => [9.776655129796268, 0.822188179971719],
+        let gamma = match noise.sd {
+            Some(_) => 11.669211961222613,
+            None => 9.776655129796268,
         };
         close(found.gamma_nominal, gamma);
-        close(fit.level.unwrap(), level);
     }
 }
 
@@ -282,7 +276,7 @@ const USUAL: &[Unknown] = {
     &[Offset, Drift, Gain, Variance]
 };
 
-// Verifies: TRC-072, TRC-070, TRC-075.
+// Verifies: TRC-070, TRC-075.
 #[test]
 fn a_record_that_cannot_be_judged_has_a_cause() {
     let held = {
@@ -290,7 +284,7 @@ fn a_record_that_cannot_be_judged_has_a_cause() {
         let columns = [&mut record.forces.lateral, &mut record.forces.normal];
         for column in columns {
             let values = column.clone();
-            (0..column.len()).for_each(|i| column[i] = values[i / 80 * 80]);
+            (0..column.len()).for_each(|i| column[i] = values[i / 2 * 2]);
         }
         record
     };
@@ -308,18 +302,13 @@ fn a_record_that_cannot_be_judged_has_a_cause() {
         (scaled(0.0, 1.0, 1.0), 0.1, None),
         // A gel that is nearly twice as stiff, in nearly twice the noise.
         (scaled(0.5, 1.9, 1.9), 0.19, None),
-        (scaled(0.5, 1.0, -1.0), 0.1, Some(Cause::Sign)),
-        (scaled(0.5, 1e3, 1e3), 0.1, Some(Cause::ForceUnit)),
-        (scaled(0.5, 4.0, 4.0), 0.4, Some(Cause::Level)),
-        (scaled(0.5, 1.0, 1.0), 100.0, Some(Cause::NoiseUnit)),
-        (scaled(0.5, 1.0, 1.0), 1e-4, Some(Cause::NoiseUnit)),
+        (scaled(0.5, 1e3, 1e3), 0.1, Some(Cause::Misfit)),
         (scaled(0.5, 1.0, 1.0), 0.035, Some(Cause::Misfit)),
-        (scaled(0.5, 1.0, 1.0), 0.29, Some(Cause::NoiseTooSmall)),
-        (scaled(-0.5, 1.0, 1.0), 0.1, Some(Cause::Opposite)),
-        (held, 0.1, Some(Cause::TooFewSamples)),
+        (scaled(0.5, 1.0, 1.0), 0.29, Some(Cause::Misfit)),
+        (held, 0.1, Some(Cause::Coloured)),
     ] {
         let found = asked(&record, USUAL, Some(stated));
-        assert_eq!(found.causes.first(), cause.as_ref(), "{found:?}");
+        assert_eq!(found.causes, Vec::from_iter(cause), "{found:?}");
         assert_eq!(found.decision.is_none(), cause.is_some());
     }
 }
@@ -341,49 +330,6 @@ fn the_limits_of_chi_square() {
         close(high, expected[1] * within);
     }
     assert_eq!(limits(USUAL, None), None);
-}
-
-// Verifies: TRC-072.
-#[test]
-fn samples_that_depend_on_one_another_do_not_count_twice() {
-    // 41 samples, and the 2001 that a line through them gives.
-    let whole = sweep(0.5, 3);
-    let sample = |i: usize| whole.forces().map(|force| force[i]).into_array();
-    let tenth = whole.positions.iter().copied().step_by(10);
-    let few = record(tenth.collect(), |i| sample(10 * i));
-    let many: Vec<f64> = (0..2001).map(|i| 8e-6 * f64::from(i) - 8e-3).collect();
-    let many = record(many, |i| {
-        let (from, share) = ((i / 50).min(39), (i - (i / 50).min(39) * 50) as f64 / 50.0);
-        let [a, b] = [sample(10 * from), sample(10 * from + 10)];
-        [0, 1].map(|channel| (1.0 - share) * a[channel] + share * b[channel])
-    });
-    let record_of_many = many;
-    let records = [&whole, &few, &record_of_many];
-    let [white, few, many] = records.map(|record| asked(record, USUAL, None));
-    assert_eq!((white.fit.block, white.fit.effective_samples), (1, 802.0));
-    assert_eq!((few.fit.block, few.fit.effective_samples), (1, 82.0));
-    // Without blocks γ were 7 times as large.
-    let ratio = many.test.gamma / few.test.gamma;
-    assert!((0.5..1.5).contains(&ratio), "{ratio}");
-    assert!((40.0..120.0).contains(&many.fit.effective_samples));
-    // Of the longer correlation, and of the share of the 2001 samples a channel that 6 amplitudes leave to its noise.
-    let (without, with) = (gel(0.0), gel(0.5));
-    let question = Question {
-        unknown: USUAL,
-        ..question(4e-3)
-    };
-    let mut design = Design::new(&question, &without, &record_of_many).unwrap();
-    let set = design.set_template(&question, &with, &record_of_many);
-    set.unwrap();
-    let (left, explained) = design.whitened(many.fit.noise_sd).unexplained().unwrap();
-    assert_eq!(explained, 6);
-    let lengths = channels(&left).map(|left| {
-        let length = correlation_length(left);
-        length / (1.0 - 3.0 * length / 2001.0)
-    });
-    let length = lengths.lateral.max(lengths.normal);
-    close(many.fit.effective_samples, 4002.0 / length);
-    assert_eq!(many.fit.block, (5.0 * length).ceil() as usize);
 }
 
 // Verifies: TRC-076.
