@@ -215,12 +215,15 @@ impl Model {
     }
 
     /// Solves one lateral position at increasing depths, each pose starting the next.
+    ///
+    /// Implements: FEM-063.
     fn column(&self, depths: &[f64], lateral: f64) -> Result<Vec<PoseSolution>, FemError> {
-        let mut from = Pose {
+        let above = Pose {
             depth: 0.0,
             lateral,
         };
-        let mut state = ContactState::untouched(self.surface.positions.len());
+        let untouched = ContactState::untouched(self.surface.positions.len());
+        let (mut from, mut state) = (above, untouched.clone());
         let mut solutions = Vec::with_capacity(depths.len());
         let mut earlier: Option<(f64, ContactState)> = None;
         for &depth in depths {
@@ -231,7 +234,11 @@ impl Model {
                 }
                 _ => state.clone(),
             };
-            let solved = self.approach(pose, from, &start)?;
+            // Where the gel is turned inside out, one way to a pose may fail and another not.
+            let solved = self
+                .approach(pose, from, &start)
+                .or_else(|_| self.approach(pose, from, &state))
+                .or_else(|_| self.approach(pose, above, &untouched))?;
             earlier = Some((from.depth, std::mem::replace(&mut state, solved)));
             from = pose;
             solutions.push(self.solution(pose, state.clone()));

@@ -2,6 +2,7 @@ use crate::fem::field::determinant;
 use crate::fem::{Contact, FemError, MESH_SIZE, Model, Pose, PoseSolution};
 use crate::force::Force;
 use crate::force_map::ForceMap;
+use crate::phantom::Phantom;
 use palpate_asserts::assert_near;
 
 use super::{builtin, finest, off_centre, pose};
@@ -44,6 +45,44 @@ fn maps_are_mirror_symmetric_to_the_bit() {
         // The full solve adds up in another order on the other side: equal to its residual only.
         assert!((u[0] + mirrored[0]).abs() < 1e-12 && (u[1] - mirrored[1]).abs() < 1e-12);
     }
+}
+
+/// A probe of 1.5 mm over a hard disc in a soft gel, which it turns inside out at 3 mm.
+const INSIDE_OUT: &str = r#"name = "soft"
+[well]
+width_mm = 30.0
+[[layer]]
+name = "skin"
+thickness_mm = 1.0
+youngs_modulus_kpa = 5.0
+poisson_ratio = 0.49
+[[layer]]
+name = "gel"
+thickness_mm = 12.0
+youngs_modulus_kpa = 5.0
+poisson_ratio = 0.49
+[[inclusion]]
+centre_x_mm = 0.0
+depth_mm = 2.0
+diameter_mm = 4.0
+youngs_modulus_kpa = 1200.0
+poisson_ratio = 0.49
+[probe]
+radius_mm = 1.5
+length_mm = 30.0
+"#;
+
+// Verifies: FEM-063, FEM-011.
+#[test]
+fn a_pose_that_converges_alone_converges_after_others() {
+    let phantom = Phantom::from_toml(INSIDE_OUT, "soft.toml").unwrap();
+    let model = Model::new(&phantom, 1e-3, Contact::DeformedNormal).unwrap();
+    assert!(model.solve(pose(3e-3, 0.0)).is_ok());
+    let map = model.map(&[2e-3, 3e-3], &[0.0], &|_| ()).unwrap();
+    // The first pose is solved as alone.
+    let alone = model.solve(pose(2e-3, 0.0)).unwrap();
+    assert_eq!(map.table().forces().normal.row(0)[0], alone.force.normal);
+    assert!(map.table().forces().normal.row(1)[0].is_finite());
 }
 
 /// Asserts that a map has the forces of its poses.
