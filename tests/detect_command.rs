@@ -2,6 +2,7 @@
 //! against the library's and against plain sums.
 
 mod bank;
+mod many;
 mod refused;
 mod robust;
 
@@ -381,6 +382,54 @@ fn a_record_of_a_logger_is_the_same_record() {
          palpate: note: logger.csv: commas in its numbers are decimal commas\n"
     );
     assert_eq!((found, String::new()), answer_and_notes("with.csv", ""));
+}
+
+// Verifies: CLI-174, MAP-045, MAP-046, MAP-047.
+#[test]
+fn a_record_of_a_machine_is_the_same_record() {
+    let rows = place().read("with.csv");
+    let rows: String = rows.lines().skip(2).map(|row| format!("{row}\n")).collect();
+    let foot = "Total time (s),10.0\n";
+    let head = "Gel,7\nLimit (N),10\n\n";
+    place().write(
+        "named.csv",
+        format!("{head}Position [mm],Fz (mN),Shear_Force\n{rows}{foot}"),
+    );
+    // The name of the first column stands in the preamble too, above numbers.
+    let other = "Axis,Cell,Side Force\n1,2,3\n\nAxis,Cell,Side Force\nmm,mN,N\n";
+    place().write("other.csv", format!("{other}{rows}{foot}"));
+    place().write(
+        "machine.toml",
+        "[columns]\nposition = \"Axis\"\nnormal = \"Cell\"\nlateral = \"Side Force\"\n",
+    );
+    let expected = answer_and_notes("with.csv", "").0;
+    let (found, notes) = answer_and_notes("named.csv", "");
+    assert_eq!(found, expected);
+    for told in [
+        "the header is line 4: what is before it is not used",
+        "column \"Fz (mN)\" is read as normal_force_mn",
+        "column \"Shear_Force\" is read as lateral_force_n",
+        "lines after the last row are not used: 1",
+    ] {
+        assert_has(&notes, told);
+    }
+    let (found, notes) = answer_and_notes("other.csv", "--columns machine.toml --skip-rows 2");
+    assert_eq!(found, expected);
+    assert_has(&notes, "line 5 gives the units");
+    let stated = "position=Axis[mm],normal=Cell[mN],lateral=3[N]";
+    place().write("plain.csv", format!("Axis,Cell,Side\n{rows}"));
+    assert_eq!(
+        answer_and_notes("plain.csv", &format!("--columns {stated}")).0,
+        expected
+    );
+    let output = place().run(&format!(
+        "detect plain.csv {MAPS} {USUAL} --columns position=Axis,normal=2[mN],lateral=3[N]"
+    ));
+    assert_eq!(output.status.code(), Some(2));
+    assert_has(
+        text(&output.stderr),
+        "plain.csv:1: column 1 has no unit in the header \"Axis,Cell,Side\"",
+    );
 }
 
 // Verifies: CLI-140, TRC-025.

@@ -1,5 +1,6 @@
 //! Measured force maps as CSV through the public interface.
 
+use palpate::csv::Layout;
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use palpate::phantom::Phantom;
@@ -62,11 +63,13 @@ fn tables_of_spreadsheets_are_read() {
         format!("{number};{depth};{lateral};20,5;\"{normal}\";{sideways}")
     });
     let text = format!("{header}\r\n{}", rows.collect::<Vec<_>>().join("\r\n"));
-    let (found, notes) = ForceTable::from_csv_with_notes(&text, "gel.csv").unwrap();
+    let (found, notes) =
+        ForceTable::from_csv_with_notes(&text, "gel.csv", &Layout::default()).unwrap();
     assert_eq!(found, table());
     let decimal = "commas in its numbers are decimal commas";
     assert_eq!(notes, ["column \"T/°C\" is not used", decimal]);
-    let (found, notes) = ForceTable::from_csv_with_notes(EXAMPLE, "gel.csv").unwrap();
+    let (found, notes) =
+        ForceTable::from_csv_with_notes(EXAMPLE, "gel.csv", &Layout::default()).unwrap();
     assert_eq!((found, notes.len()), (table(), 0));
 }
 

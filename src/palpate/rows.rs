@@ -90,6 +90,12 @@ impl Rows {
         self.0.push(Row { key, value, line });
     }
 
+    /// The value of a quantity.
+    pub fn get(&self, key: &str) -> Option<&Value> {
+        let row = self.0.iter().find(|row| row.key == key);
+        row.map(|row| &row.value)
+    }
+
     /// Adds the quantities of `more`.
     pub fn append(&mut self, more: Rows) {
         self.0.extend(more.0);

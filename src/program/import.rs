@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::CliError;
 use super::comparison::{compare, left_out};
+use super::layout::LayoutArguments;
 use super::numbers::length;
 use super::output::{note, print, read, write};
 use super::solve::phantom;
@@ -27,6 +28,8 @@ pub struct ImportArguments {
     /// Smooths the forces along the lateral axis by local parabolas of half-width W mm, and reports the noise
     #[arg(long = "smooth-mm", value_name = "W", value_parser = length, allow_hyphen_values = true)]
     half_width: Option<f64>,
+    #[command(flatten)]
+    layout: LayoutArguments,
     /// Output file [default: standard output]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -39,7 +42,8 @@ pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
     let phantom = arguments.phantom.as_deref().map(phantom).transpose()?;
     let text = read(&arguments.csv)?;
     let file = arguments.csv.display().to_string();
-    let (mut forces, notes) = ForceTable::from_csv_with_notes(&text, &file)?;
+    let (mut forces, notes) =
+        ForceTable::from_csv_with_notes(&text, &file, &arguments.layout.get()?)?;
     notes.iter().for_each(|text| note(&file, text));
     let mut measurement = Measurement::new(&file, &arguments.note);
     if let Some(half_width) = arguments.half_width {

@@ -4,11 +4,13 @@
 use crate::decimal::parse_scaled;
 use crate::refusal::{Refusal, shortened};
 
-/// What a column can be called, and for each name the power of ten from its unit to SI. Of several groups of names the first that
-/// the header has counts.
-///
-/// Implements: CON-002.
-pub type Column = &'static [&'static [(&'static str, i32)]];
+mod columns;
+
+pub use columns::{Column, Layout};
+use columns::{Found, find};
+
+/// Lines among which the header is looked for.
+const MOST_LINES_BEFORE: usize = 200;
 
 /// A table of `N` columns.
 pub struct Rows<const N: usize> {
@@ -31,55 +33,199 @@ impl<const N: usize> Rows<N> {
     ///
     /// Implements: MAP-030, MAP-033, MAP-041, MAP-040, TRC-001, TRC-004.
     pub fn parse(text: &str, columns: [Column; N], expected: &str) -> Result<Self, Refusal> {
-        let ((line, header), lines) = header_and_rows(text);
-        // Of equally many fields the last makes it: the comma.
-        let separators = ['\t', ';', ','].into_iter();
-        let separator = separators.max_by_key(|&separator| split(header, separator).count());
-        let separator = separator.unwrap_or(',');
-        let fields: Vec<&str> = split(header, separator).collect();
-        let mut places = [(0, "", 0); N];
-        for (place, column) in places.iter_mut().zip(columns) {
-            *place = find(&fields, column).map_err(|found| {
+        Rows::parse_as(text, columns, expected, &Layout::default())
+    }
+
+    /// As [`Rows::parse`], of a file in this layout.
+    ///
+    /// # Errors
+    /// As [`Rows::parse`]; a layout that states what the table does not have.
+    ///
+    /// Implements: MAP-045, MAP-046, MAP-047.
+    pub fn parse_as(
+        text: &str,
+        columns: [Column; N],
+        expected: &str,
+        layout: &Layout,
+    ) -> Result<Self, Refusal> {
+        layout.check(&columns)?;
+        let ((first, line), rest) = header_and_rows(text);
+        let lines = std::iter::once((first, line)).chain(rest);
+        let mut lines: Vec<_> = lines.filter(|(line, _)| *line > layout.skipped).collect();
+        if lines.is_empty() {
+            lines.push((first, ""));
+        }
+        let mut header =
+            Header::find(&lines, columns, layout).map_err(|(found, (line, header))| {
                 let header = shortened(header.trim());
-                Refusal::state(
-                    format!("{found} in the header {header:?}"),
-                    format!("give {expected}"),
-                )
-                .at(line)
+                let found = format!("{found} in the header {header:?}");
+                Refusal::state(found, format!("give {expected}")).at(line)
             })?;
+        let mut notes = Vec::new();
+        if header.at > 0 {
+            let first = lines[header.at].0;
+            notes.push(format!(
+                "the header is line {first}: what is before it is not used"
+            ));
+        }
+        let mut rows = &lines[header.at + 1..];
+        if let Some((line, found)) = rows.first().and_then(|row| header.units(*row, columns)) {
+            notes.push(format!("line {line} gives the units"));
+            (header.found, rows) = (found, &rows[1..]);
+        }
+        if let Some(open) = header.found.iter().find(|found| !found.has_unit) {
+            let (place, text) = (open.place + 1, shortened(header.line.trim()));
+            let found = format!("column {place} has no unit in the header {text:?}");
+            let remedy = format!("give {expected}, or a unit as in --columns 'position=NAME[mm]'");
+            return Err(Refusal::state(found, remedy).at(lines[header.at].0));
+        }
+        for found in header.found.iter().filter(|found| found.is_synonym) {
+            let name = shortened(header.fields[found.place]);
+            notes.push(format!("column {name:?} is read as {}", found.name));
+        }
+        let footer = header.footer(rows);
+        if footer > 0 {
+            rows = &rows[..rows.len() - footer];
+            notes.push(format!("lines after the last row are not used: {footer}"));
         }
         // Where commas separate the fields, none is a decimal comma.
-        let mut mark = (separator == ',').then_some('.');
-        let mut numbers = |row| {
-            let fields = counted(split(row, separator).collect(), fields.len(), header)?;
-            let mut numbers = [0.0; N];
-            for (number, (place, name, power)) in numbers.iter_mut().zip(places) {
-                *number = decimal(fields[place], power, &mut mark).ok_or_else(|| {
-                    let found = format!("{:?}", shortened(fields[place]));
-                    let with = match mark.filter(|_| separator != ',') {
-                        Some(mark) => format!(" with the decimal mark {mark:?} of the file"),
-                        None => String::new(),
-                    };
-                    Refusal::value(name, found, format!("a finite decimal number{with}"))
-                })?;
-            }
-            Ok(numbers)
-        };
-        let row = |(line, row)| match numbers(row) {
+        let mut mark = (header.separator == ',').then_some('.');
+        let row = |&(line, row): &(usize, &str)| match header.numbers(row, &mut mark) {
             Ok(numbers) => Ok((line, numbers)),
             Err(refusal) => Err(Refusal::at(refusal, line)),
         };
-        let rows = lines.map(row).collect::<Result<_, _>>()?;
-        let mut notes = Vec::from_iter(unused(&fields, &places.map(|(place, ..)| place)));
+        let rows = rows.iter().map(row).collect::<Result<_, _>>()?;
+        notes.extend(unused(
+            &header.fields,
+            &header.found.map(|found| found.place),
+        ));
         if mark == Some(',') {
             notes.push("commas in its numbers are decimal commas".into());
         }
         Ok(Rows {
-            line,
-            names: places.map(|(_, name, _)| name),
+            line: lines[header.at].0,
+            names: header.found.map(|found| found.name),
             rows,
             notes,
         })
+    }
+}
+
+/// The header of a table, and where its columns are.
+struct Header<'a, const N: usize> {
+    /// Its place among the lines.
+    at: usize,
+    line: &'a str,
+    separator: char,
+    fields: Vec<&'a str>,
+    found: [Found; N],
+}
+
+impl<'a, const N: usize> Header<'a, N> {
+    /// The first line that names the columns and has numbers below it, else the first that names them.
+    ///
+    /// # Errors
+    /// What is wrong with the first line, if there is none.
+    ///
+    /// Implements: MAP-047.
+    fn find(
+        lines: &[(usize, &'a str)],
+        columns: [Column; N],
+        layout: &Layout,
+    ) -> Result<Header<'a, N>, (String, (usize, &'a str))> {
+        let mut named = None;
+        for at in 0..lines.len().min(MOST_LINES_BEFORE) {
+            if let Ok(header) = Header::of(lines[at].1, at, columns, layout) {
+                let below: Vec<_> = lines.iter().skip(at + 1).take(2).copied().collect();
+                let units = below.first().and_then(|row| header.units(*row, columns));
+                let row = below.get(usize::from(units.is_some()));
+                if row.is_some_and(|(_, row)| header.numbers(row, &mut None).is_ok()) {
+                    return Ok(header);
+                }
+                named.get_or_insert(header);
+            }
+        }
+        let first = || Header::of(lines[0].1, 0, columns, layout);
+        named.map_or_else(|| first().map_err(|found| (found, lines[0])), Ok)
+    }
+
+    /// The columns in one line.
+    ///
+    /// Implements: MAP-040.
+    fn of(
+        line: &'a str,
+        at: usize,
+        columns: [Column; N],
+        layout: &Layout,
+    ) -> Result<Header<'a, N>, String> {
+        // Of equally many fields the last makes it: the comma.
+        let separators = ['\t', ';', ','].into_iter();
+        let separator = separators.max_by_key(|&separator| split(line, separator).count());
+        let separator = separator.unwrap_or(',');
+        let fields: Vec<&str> = split(line, separator).collect();
+        let found = columns.map(|column| find(&fields, column, layout));
+        let found: Vec<Found> = found.into_iter().collect::<Result<_, _>>()?;
+        // There are as many as columns.
+        let found = std::array::from_fn(|at| found[at]);
+        Ok(Header {
+            at,
+            line,
+            separator,
+            fields,
+            found,
+        })
+    }
+
+    /// The columns in the units that a row gives, and its line, if it is one of units.
+    fn units(
+        &self,
+        (line, row): (usize, &str),
+        columns: [Column; N],
+    ) -> Option<(usize, [Found; N])> {
+        let fields: Vec<&str> = split(row, self.separator).collect();
+        let mut found = self.found;
+        for (found, column) in found.iter_mut().zip(columns) {
+            *found = found.in_unit(column, fields.get(found.place)?)?;
+        }
+        Some((line, found))
+    }
+
+    /// How many lines behind the last row of this table are none: they have another number of fields and begin with no number.
+    fn footer(&self, rows: &[(usize, &str)]) -> usize {
+        let is_row = |row: &str| split(row, self.separator).count() == self.fields.len();
+        let is_number = |row: &str| {
+            let first = split(row, self.separator).next();
+            first.is_some_and(|first| decimal(first, 0, &mut None).is_some())
+        };
+        let behind = rows
+            .iter()
+            .rev()
+            .take_while(|(_, row)| !is_row(row) && !is_number(row));
+        let behind = behind.count();
+        if behind < rows.len() { behind } else { 0 }
+    }
+
+    /// The numbers of a row, in SI; the first decimal mark that is there sets that of the file.
+    fn numbers(&self, row: &str, mark: &mut Option<char>) -> Result<[f64; N], Refusal> {
+        let fields = counted(
+            split(row, self.separator).collect(),
+            self.fields.len(),
+            self.line,
+        )?;
+        let mut numbers = [0.0; N];
+        for (number, found) in numbers.iter_mut().zip(self.found) {
+            let field = fields[found.place];
+            let read = decimal(field, found.power, mark).map(|read| read * found.factor);
+            *number = read.filter(|read| read.is_finite()).ok_or_else(|| {
+                let with = match mark.filter(|_| self.separator != ',') {
+                    Some(mark) => format!(" with the decimal mark {mark:?} of the file"),
+                    None => String::new(),
+                };
+                let text = format!("{:?}", shortened(field));
+                Refusal::value(found.name, text, format!("a finite decimal number{with}"))
+            })?;
+        }
+        Ok(numbers)
     }
 }
 
@@ -100,33 +246,10 @@ fn unused(header: &[&str], used: &[usize]) -> Option<String> {
     }
 }
 
-/// Where in a header a column is, under which name, and the power of ten of that.
-///
-/// Implements: MAP-030, MAP-033.
-fn find(header: &[&str], column: Column) -> Result<(usize, &'static str, i32), String> {
-    for names in column {
-        let named = (0..).zip(header).filter_map(|(place, field)| {
-            let same = |(name, _): &&(&str, i32)| name.eq_ignore_ascii_case(field);
-            let &(name, power) = names.iter().find(same)?;
-            Some((place, name, power))
-        });
-        match named.collect::<Vec<_>>()[..] {
-            [] => {}
-            [only] => return Ok(only),
-            [(_, first, _), (_, second, _), ..] => {
-                return Err(format!("columns {first} and {second}"));
-            }
-        }
-    }
-    let names = column.iter().copied().flatten().map(|(name, _)| *name);
-    let names: Vec<_> = names.collect();
-    Err(format!("no column {}", names.join(" or ")))
-}
-
 /// The fields of a line, without the spaces and then the quotes around them. A separator between quotes is none.
 ///
 /// Implements: MAP-040.
-fn split(line: &str, separator: char) -> impl Iterator<Item = &str> {
+pub fn split(line: &str, separator: char) -> impl Iterator<Item = &str> {
     let mut quoted = false;
     let fields = line.split(move |c| {
         quoted ^= c == '"';

@@ -1,7 +1,7 @@
 //! Measured force maps as CSV (`spec/force-map.md`).
 
 use super::{ForceMap, ForceTable, Matrix, Measurement, Source, increasing};
-use crate::csv::{Column, Rows};
+use crate::csv::{Column, Layout, Rows};
 use crate::decimal::{format_scaled, mm};
 use crate::force::Force;
 use crate::phantom::Phantom;
@@ -73,31 +73,34 @@ impl ForceTable {
     ///
     /// Implements: MAP-030, MAP-032, MAP-033, MAP-041.
     pub fn from_csv(text: &str, file: &str) -> Result<ForceTable, Refusal> {
-        Ok(ForceTable::from_csv_with_notes(text, file)?.0)
+        Ok(ForceTable::from_csv_with_notes(text, file, &Layout::default())?.0)
     }
 
-    /// As [`ForceTable::from_csv`], and what a person should know of how the text was read, such as the columns that are not used.
+    /// As [`ForceTable::from_csv`], of a file in this layout, and what a person should know of how the text was read, such as the
+    /// columns that are not used.
     ///
     /// ```
+    /// use palpate::csv::Layout;
     /// use palpate::force_map::ForceTable;
     ///
     /// let text = "\"\";depth_mm;lateral_mm;normal_force_n;lateral_force_n;volt\n1;4;0;1,5;0,0;2,25\n";
-    /// let (table, notes) = ForceTable::from_csv_with_notes(text, "gel.csv")?;
+    /// let (table, notes) = ForceTable::from_csv_with_notes(text, "gel.csv", &Layout::default())?;
     /// assert_eq!(table.forces().normal.values(), [1.5]);
     /// assert_eq!(notes[0], "column \"volt\" is not used");
     /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
     /// # Errors
-    /// As [`ForceMap::from_csv`].
+    /// As [`ForceMap::from_csv`]; a layout that states what a map does not have.
     ///
-    /// Implements: MAP-041, MAP-044.
+    /// Implements: MAP-041, MAP-044, MAP-046.
     pub fn from_csv_with_notes(
         text: &str,
         file: &str,
+        layout: &Layout,
     ) -> Result<(ForceTable, Vec<String>), Refusal> {
         let read = || {
-            let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER)?;
+            let table = Rows::parse_as(text, COLUMNS, EXPECTED_HEADER, layout)?;
             Ok((on_a_grid(table.rows)?, table.notes))
         };
         read().map_err(|refusal: Refusal| refusal.in_file(file))

@@ -203,6 +203,22 @@ impl RobustQuestion<'_> {
         prior: Option<&[f64]>,
         sweeps: &[RobustSweep<'_>],
     ) -> Result<(RobustAnswer, RobustPlace), Refusal> {
+        let (detector, hypotheses) = self.bank_detector(bank, prior, sweeps)?;
+        let answer = detector.judge(&records(sweeps))?;
+        let place = hypotheses.place(&answer);
+        Ok((answer, place))
+    }
+
+    /// The detector of a bank's inclusions in records over the positions of these sweeps, and its hypotheses.
+    ///
+    /// # Errors
+    /// As [`RobustQuestion::locate`].
+    pub fn bank_detector<'b>(
+        &self,
+        bank: &'b Bank,
+        prior: Option<&[f64]>,
+        sweeps: &[RobustSweep<'_>],
+    ) -> Result<(RobustDetector<'_>, BankHypotheses<'b>), Refusal> {
         if let Some(prior) = prior {
             // Whether it is one.
             mixture_theta(&vec![0.0; bank.maps().len()], prior).map_err(refused)?;
@@ -213,9 +229,7 @@ impl RobustQuestion<'_> {
         let signals = hypotheses.signals(sweeps)?;
         let without = bank.reference().table();
         let detector = RobustDetector::new(*self, without, sweeps, &signals)?;
-        let answer = detector.judge(&records(sweeps))?;
-        let place = hypotheses.place(&answer);
-        Ok((answer, place))
+        Ok((detector, hypotheses))
     }
 }
 

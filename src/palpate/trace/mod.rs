@@ -58,7 +58,7 @@ pub use design::{Unknown, in_words, nuisances};
 pub use fit::{Cause, Fit, MISFIT_RATE, reasons};
 pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
 
-use crate::csv::{Column, Rows};
+use crate::csv::{Column, Layout, Rows};
 use crate::decimal::mm;
 use crate::detect::DetectError;
 use crate::force::Force;
@@ -153,12 +153,12 @@ pub struct Record {
 }
 
 impl Trace {
-    /// Reads the trace at `path`.
+    /// Reads the trace at `path`, in this layout.
     ///
     /// # Errors
-    /// As [`Trace::from_csv`]; a file that cannot be read as UTF-8.
-    pub fn read(path: &Path) -> Result<Trace, Refusal> {
-        crate::file::read(path, Trace::from_csv)
+    /// As [`Trace::from_csv_as`]; a file that cannot be read as UTF-8.
+    pub fn read(path: &Path, layout: &Layout) -> Result<Trace, Refusal> {
+        crate::file::read(path, |text, file| Trace::from_csv_as(text, file, layout))
     }
 
     /// The trace in `text`, the content of `file`.
@@ -169,8 +169,18 @@ impl Trace {
     ///
     /// Implements: TRC-001, TRC-004, TRC-007, TRC-008.
     pub fn from_csv(text: &str, file: &str) -> Result<Trace, Refusal> {
+        Trace::from_csv_as(text, file, &Layout::default())
+    }
+
+    /// As [`Trace::from_csv`], of a file in this layout.
+    ///
+    /// # Errors
+    /// As [`Trace::from_csv`]; a layout that states what a trace does not have.
+    ///
+    /// Implements: MAP-046.
+    pub fn from_csv_as(text: &str, file: &str, layout: &Layout) -> Result<Trace, Refusal> {
         let read = || {
-            let table = Rows::parse(text, COLUMNS, EXPECTED_HEADER)?;
+            let table = Rows::parse_as(text, COLUMNS, EXPECTED_HEADER, layout)?;
             let samples = table.rows;
             let empty = Refusal::state("no samples under the header", "give at least one row");
             empty.at(table.line).when(samples.is_empty())?;

@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use crate::error::refuse;
+use crate::layout::LayoutArguments;
 use crate::numbers::{length_or_zero, newtons, position, probability, sure_probability, velocity};
 use crate::{CliError, Format};
+use palpate::csv::Layout;
 use palpate::force::Force;
 use palpate::robust::Part;
 use palpate::trace::{Correlation, Criterion, Noise, Trace, Unknown};
@@ -15,8 +17,8 @@ use palpate::trace::{Correlation, Criterion, Noise, Trace, Unknown};
 /// Arguments of `palpate detect`.
 #[derive(Debug, Args)]
 pub struct DetectArguments {
-    /// The recorded sweep: a CSV file with position_mm (or time_s), lateral_force_n and normal_force_n, one row per sample; several
-    /// with --together
+    /// The recorded sweep: a CSV file with position_mm (or time_s), lateral_force_n and normal_force_n, one row per sample. Several, or
+    /// folders of them, are each judged alone, or all --together; - is standard input
     #[arg(value_name = "TRACE.csv", required = true)]
     pub(super) traces: Vec<PathBuf>,
     #[command(flatten)]
@@ -30,8 +32,29 @@ pub struct DetectArguments {
     #[command(flatten)]
     pub(super) criterion: CriterionArguments,
     /// Output format
-    #[arg(long, value_enum, default_value_t = Format::Table)]
-    pub(super) format: Format,
+    #[arg(long, value_enum, default_value_t = AnswerFormat::Table)]
+    pub(super) format: AnswerFormat,
+}
+
+/// The format of an answer, or of many.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum AnswerFormat {
+    /// For people; of many records a line each.
+    Table,
+    /// For programs; keys carry the unit. Of many records a line each.
+    Json,
+    /// A line for each record.
+    Csv,
+}
+
+impl AnswerFormat {
+    /// That of one answer.
+    pub fn of_one(self) -> Format {
+        match self {
+            AnswerFormat::Json => Format::Json,
+            AnswerFormat::Table | AnswerFormat::Csv => Format::Table,
+        }
+    }
 }
 
 /// What the record may hold beside an inclusion.
@@ -119,6 +142,8 @@ pub(super) struct Sweep {
     /// Drops samples outside the lateral range of the maps, and reports how many
     #[arg(long)]
     pub trim: bool,
+    #[command(flatten)]
+    pub layout: LayoutArguments,
     /// Velocity of the probe in mm/s, for a trace over time
     #[arg(long = "velocity-mm-s", value_name = "V", value_parser = velocity, allow_hyphen_values = true, requires = "start")]
     pub velocity: Option<f64>,
@@ -281,17 +306,17 @@ impl NoiseArguments {
         known.or_else(|error| refuse!("--known {error}"))
     }
 
-    /// The noise as it was stated or is to be estimated.
+    /// The noise as it was stated or is to be estimated, from a blank sweep in this layout.
     ///
     /// Implements: CLI-041.
-    pub fn noise(&self) -> Result<Noise, CliError> {
+    pub fn noise(&self, layout: &Layout) -> Result<Noise, CliError> {
         let sd = self.noise_sd.get();
         let of = |correlation| Noise { sd, correlation };
         let noise = match &*self.noise {
             "auto" => of(Correlation::OfRecord),
             "white" => of(Correlation::None),
             file => {
-                let blank = Noise::of_blank(&Trace::read(Path::new(file))?)?;
+                let blank = Noise::of_blank(&Trace::read(Path::new(file), layout)?)?;
                 let sd = sd.or(blank.sd);
                 Noise { sd, ..blank }
             }

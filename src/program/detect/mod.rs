@@ -1,6 +1,7 @@
 //! `palpate detect`: a recorded sweep against two force maps or a bank (`spec/command-line.md`).
 
 pub mod arguments;
+mod many;
 mod robust;
 
 use std::fmt::Display;
@@ -15,6 +16,7 @@ pub use arguments::DetectArguments;
 use arguments::{Known, ModelName};
 use palpate::bank::{Bank, BankSearch};
 use palpate::chart::place_figure;
+use palpate::csv::Layout;
 use palpate::detect::Decision;
 use palpate::force_map::{ForceMap, ForceTable, Hypotheses};
 use palpate::refusal::one_line;
@@ -29,29 +31,34 @@ const DEPTH_TOLERANCE: f64 = 0.3e-3;
 /// Implements: CLI-040, CLI-043, CLI-003, CLI-048, CLI-055, CLI-017, CLI-140, CLI-143, CLI-146.
 pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     robust::check_options(arguments)?;
-    let sweep = &arguments.sweep;
-    let motion = sweep.velocity.zip(sweep.start);
-    let read = |path: &PathBuf| -> Result<Record, CliError> {
-        let trace = Trace::read(path)?;
-        for text in trace.notes() {
-            note(path.display(), text);
-        }
-        Ok(trace.record(motion.map(|(velocity, start)| Motion { velocity, start }))?)
-    };
-    let sweeps = arguments
-        .traces
-        .iter()
-        .chain(&arguments.model.reference_sweeps);
-    let mut records = sweeps.map(read).collect::<Result<Vec<_>, _>>()?;
+    let layout = arguments.sweep.layout.get()?;
     if arguments.model.model == ModelName::Robust {
-        return robust::detect(arguments, records);
+        return robust::detect(arguments, &layout);
     }
     // There is one, as has been checked.
-    let record = records.remove(0);
+    let record = read(arguments, &layout, &arguments.traces[0])?;
     match &arguments.hypotheses.bank {
         Some(path) => by_bank(arguments, record, path),
         None => by_maps(arguments, record),
     }
+}
+
+/// The record in a file, or of standard input for `-`.
+///
+/// Implements: CLI-175.
+fn read(arguments: &DetectArguments, layout: &Layout, path: &Path) -> Result<Record, CliError> {
+    let trace = if path == Path::new("-") {
+        let text = palpate::file::text(Path::new("/dev/stdin"));
+        let text = text.map_err(CliError::file("read", Path::new("standard input")))?;
+        Trace::from_csv_as(&text, "-", layout)?
+    } else {
+        Trace::read(path, layout)?
+    };
+    for text in trace.notes() {
+        note(path.display(), text);
+    }
+    let motion = arguments.sweep.velocity.zip(arguments.sweep.start);
+    Ok(trace.record(motion.map(|(velocity, start)| Motion { velocity, start }))?)
 }
 
 /// Judges the record at the position for which the maps are.
@@ -125,7 +132,7 @@ fn question<'a>(
 ) -> Result<Question<'a>, CliError> {
     let unknown = &known.unknown;
     let depth_tolerance = depth_tolerance(arguments);
-    let noise = arguments.noise.noise()?;
+    let noise = arguments.noise.noise(&arguments.sweep.layout.get()?)?;
     if noise.sd.is_none() && !unknown.contains(&Unknown::Variance) {
         refuse!("--known variance needs --noise-sd-n, or --noise FILE to estimate it from");
     }
@@ -158,14 +165,19 @@ fn depth(arguments: &DetectArguments) -> Result<Option<f64>, CliError> {
     }
 }
 
-/// What was asked of any model; `records` begin with those of the traces.
+/// What was asked of any model of these traces; `records` begin with theirs.
 ///
 /// Implements: CLI-045.
-fn asked(arguments: &DetectArguments, depths: &[f64], records: &[Record]) -> Rows {
+fn asked(
+    arguments: &DetectArguments,
+    traces: &[PathBuf],
+    depths: &[f64],
+    records: &[Record],
+) -> Rows {
     let mut rows = Rows::default();
     let path = |path: &Path| path.display().to_string();
-    let records = &records[..arguments.traces.len()];
-    match (&arguments.traces[..], depths, records) {
+    let records = &records[..traces.len()];
+    match (traces, depths, records) {
         ([trace], [depth], [record]) => {
             rows.value("trace", path(trace));
             rows.value("samples", record.positions().len());
@@ -199,7 +211,7 @@ fn asked(arguments: &DetectArguments, depths: &[f64], records: &[Record]) -> Row
 
 /// What was asked of the exact model.
 fn exactly_asked(arguments: &DetectArguments, known: &Known, depth: f64, record: Record) -> Rows {
-    let mut rows = asked(arguments, &[depth], &[record]);
+    let mut rows = asked(arguments, &arguments.traces, &[depth], &[record]);
     rows.value("model", "exact");
     rows.value("depth_tolerance_m", depth_tolerance(arguments));
     rows.value("unknown", json!(known.unknown));
@@ -227,7 +239,7 @@ fn tell(
     rows.value("warnings", warnings.0);
     let table = format!("{}\n{words}\n", rows.table());
     let answer = Envelope::new("palpate-detection", 4, rows);
-    arguments.format.print(&answer, || table)?;
+    arguments.format.of_one().print(&answer, || table)?;
     if decision.is_none() {
         let (file, why) = (arguments.traces[0].display(), reasons(causes));
         let message = format!("{file}: cannot be judged: {why}");

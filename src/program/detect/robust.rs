@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
+use std::path::{Path, PathBuf};
 
-use super::arguments::ModelName;
-use super::{DetectArguments, TwoMaps, Warnings, asked, tell, trimmed};
+use super::arguments::{AnswerFormat, ModelName};
+use super::{DetectArguments, TwoMaps, Warnings, asked, many, tell, trimmed};
 use crate::CliError;
 use crate::error::refuse;
 use crate::output::{note, write};
@@ -12,11 +13,14 @@ use serde_json::json;
 
 use palpate::bank::Bank;
 use palpate::chart::explanation_figure;
+use palpate::csv::Layout;
 use palpate::detect::Decision;
-use palpate::force_map::ForceMap;
+use palpate::force_map::{ForceMap, Hypotheses};
 use palpate::phantom::Phantom;
+use palpate::refusal::Refusal;
 use palpate::robust::{
-    GelChanges, GelUncertainty, RobustAnswer, RobustPlace, RobustQuestion, RobustSweep,
+    BankHypotheses, GelChanges, GelUncertainty, Part, RobustAnswer, RobustDetector, RobustPlace,
+    RobustQuestion, RobustSweep,
 };
 use palpate::rows::Rows;
 use palpate::trace::{Correlation, Record, reasons};
@@ -57,193 +61,270 @@ pub fn check_options(arguments: &DetectArguments) -> Result<(), CliError> {
     if model.model == ModelName::Exact && files.figure.is_some() && files.bank.is_none() {
         refuse!("--figure with --model exact needs --bank");
     }
-    if arguments.traces.len() > 1 && !model.together {
-        refuse!(
-            "{} traces need --together, for sweeps of one place",
-            arguments.traces.len()
-        );
+    let is_many = arguments.traces.len() > 1 && !model.together;
+    if is_many && files.figure.is_some() {
+        refuse!("--figure draws one place; give one trace, or --together");
+    }
+    if is_many && model.model == ModelName::Exact {
+        refuse!("--model exact judges one trace");
+    }
+    let is_csv = arguments.format == AnswerFormat::Csv;
+    if is_csv && (model.together || model.model == ModelName::Exact) {
+        refuse!("--format csv is a table of records, without --together or --model exact");
     }
     Ok(())
 }
 
-/// Judges the sweeps of one place.
+/// Judges sweeps of one place, or each of many records.
 ///
 /// Implements: CLI-040, CLI-043, ROB-030, ROB-033, ROB-040.
-pub fn detect(arguments: &DetectArguments, records: Vec<Record>) -> Result<(), CliError> {
+pub fn detect(arguments: &DetectArguments, layout: &Layout) -> Result<(), CliError> {
     let known = arguments.noise.undisturbed()?;
-    let noise = arguments.noise.noise()?;
+    let question = question(arguments, layout, &known)?;
+    let mut warnings = Warnings::default();
+    let (maps, bank, prior);
+    let between = match &arguments.hypotheses.bank {
+        Some(path) => {
+            bank = Bank::read(path)?;
+            let file = arguments.hypotheses.prior.as_ref();
+            prior = file.map(|file| bank.read_prior(file)).transpose()?;
+            Between::Bank(&bank, prior.as_deref())
+        }
+        None => {
+            maps = TwoMaps::read(arguments)?;
+            Between::Maps(maps.hypotheses(&mut warnings)?, &maps.reference)
+        }
+    };
+    let traces = many::traces(&arguments.traces)?;
+    let is_csv = arguments.format == AnswerFormat::Csv;
+    let is_alone = traces == arguments.traces && traces.len() == 1 && !is_csv;
+    let is_one = arguments.model.together || is_alone;
+    let asked = Asked::new(
+        arguments,
+        layout,
+        question,
+        between,
+        if is_one { traces.len() } else { 1 },
+    )?;
+    if is_one {
+        one(&asked, &traces, warnings)
+    } else {
+        many::detect(&asked, &traces)
+    }
+}
+
+/// Judges sweeps of one place.
+fn one(asked: &Asked<'_>, traces: &[PathBuf], warnings: Warnings) -> Result<(), CliError> {
+    let arguments = asked.arguments;
+    let records = traces.iter().map(|path| asked.read(path));
+    let records = records.collect::<Result<Vec<_>, _>>()?;
+    let sweeps = asked.sweeps(&records);
+    let (answer, place) = asked.detector(&sweeps)?.judge(&sweeps)?;
+    for (sweep, replaced) in sweeps.iter().zip(&answer.glitches) {
+        tell_glitches(sweep.record.file(), *replaced);
+    }
+    let place = asked.bank().zip(place.as_ref());
+    let records: Vec<_> = sweeps.iter().map(|sweep| sweep.record.clone()).collect();
+    if let Some(path) = &arguments.hypotheses.figure {
+        write(path, &explanation_figure(&records, &answer, place)?)?;
+    }
+    let mut rows = asked.rows(traces, &records);
+    rows.append(answer.rows(place));
+    let verdict = (answer.decision, &answer.causes[..]);
+    tell(arguments, verdict, &conclusion(&answer), rows, warnings)
+}
+
+/// Implements: ROB-002.
+pub fn tell_glitches(file: &str, replaced: usize) {
+    if replaced > 0 {
+        let text = format!("samples replaced as glitches: {replaced}");
+        note(file, &text);
+    }
+}
+
+/// What is known of each record.
+fn question<'a>(
+    arguments: &DetectArguments,
+    layout: &Layout,
+    known: &'a [Part],
+) -> Result<RobustQuestion<'a>, CliError> {
+    let noise = arguments.noise.noise(layout)?;
     let longer = match noise.correlation {
         Correlation::Known(length) => length.sqrt(),
         Correlation::None | Correlation::OfRecord => 1.0,
     };
     let default = RobustQuestion::default();
-    let question = RobustQuestion {
-        known: &known,
+    Ok(RobustQuestion {
+        known,
         is_zeroed: arguments.model.zeroed,
         noise_sd: noise.sd.map(|sd| sd.map(|sd| sd * longer)),
         is_white: noise.correlation == Correlation::None,
         prior_h1: arguments.criterion.prior_h1,
         sure: arguments.model.sure.unwrap_or(default.sure),
-    };
-    let mut warnings = Warnings::default();
-    let (answer, rows) = match &arguments.hypotheses.bank {
-        Some(path) => by_bank(arguments, &question, records, &Bank::read(path)?)?,
-        None => by_maps(arguments, &question, records, &mut warnings)?,
-    };
-    let files = arguments
-        .traces
-        .iter()
-        .chain(&arguments.model.reference_sweeps);
-    for (file, replaced) in files
-        .zip(&answer.glitches)
-        .filter(|(_, replaced)| **replaced > 0)
-    {
-        note(
-            file.display(),
-            &format!("samples replaced as glitches: {replaced}"),
-        );
+    })
+}
+
+/// The forces to compare records with.
+enum Between<'a> {
+    /// Those of two maps, the first of which is also here.
+    Maps(Hypotheses<'a>, &'a ForceMap),
+    /// Those of a bank, and the prior of each of its maps.
+    Bank(&'a Bank, Option<&'a [f64]>),
+}
+
+/// What is asked of each record.
+pub struct Asked<'a> {
+    pub arguments: &'a DetectArguments,
+    layout: &'a Layout,
+    question: RobustQuestion<'a>,
+    between: Between<'a>,
+    /// Of each sweep of a place, m.
+    depths: Vec<f64>,
+    references: Vec<Record>,
+    /// The gels beside that of the maps, by the bits of the depth.
+    changes: BTreeMap<u64, Option<GelChanges>>,
+}
+
+impl<'a> Asked<'a> {
+    fn new(
+        arguments: &'a DetectArguments,
+        layout: &'a Layout,
+        question: RobustQuestion<'a>,
+        between: Between<'a>,
+        sweeps: usize,
+    ) -> Result<Asked<'a>, CliError> {
+        let depths = match between {
+            Between::Maps(..) => depths(arguments, 0.0, sweeps)?,
+            Between::Bank(bank, _) => depths(arguments, bank.depth(), sweeps)?,
+        };
+        let mut asked = Asked {
+            arguments,
+            layout,
+            question,
+            between,
+            depths,
+            references: Vec::new(),
+            changes: BTreeMap::new(),
+        };
+        let files = arguments.model.reference_sweeps.iter();
+        let references = files.map(|path| asked.read(path));
+        asked.references = references.collect::<Result<_, _>>()?;
+        let file = arguments.model.gel_uncertainty.as_ref();
+        let uncertainty = file.map(|file| GelUncertainty::read(file)).transpose()?;
+        let uncertainty = uncertainty.unwrap_or_default().beside(question.known);
+        for &depth in &asked.depths {
+            if let Between::Bank(bank, _) = asked.between {
+                bank.check_depth(depth)?;
+            }
+            let reference = asked.reference();
+            let name = reference.phantom().map_or("", Phantom::name);
+            if let Entry::Vacant(entry) = asked.changes.entry(depth.to_bits()) {
+                let found = GelChanges::new(reference, depth, &uncertainty);
+                entry.insert(found.map_err(CliError::fem(name))?);
+            }
+        }
+        Ok(asked)
     }
-    let verdict = (answer.decision, &answer.causes[..]);
-    tell(arguments, verdict, &conclusion(&answer), rows, warnings)
-}
 
-fn by_maps(
-    arguments: &DetectArguments,
-    question: &RobustQuestion<'_>,
-    records: Vec<Record>,
-    warnings: &mut Warnings,
-) -> Result<(RobustAnswer, Rows), CliError> {
-    let maps = TwoMaps::read(arguments)?;
-    let hypotheses = maps.hypotheses(warnings)?;
-    let depths = depths(arguments, 0.0)?;
-    let sweeps = Sweeps::new(arguments, question, records, &depths, &maps.reference)?;
-    let answer = question.judge(hypotheses, &sweeps.get())?;
-    draw(arguments, &sweeps.records, &answer, None)?;
-    let mut rows = robustly_asked(arguments, question, &depths, &sweeps.records);
-    rows.append(answer.rows(None));
-    Ok((answer, rows))
-}
-
-fn by_bank(
-    arguments: &DetectArguments,
-    question: &RobustQuestion<'_>,
-    records: Vec<Record>,
-    bank: &Bank,
-) -> Result<(RobustAnswer, Rows), CliError> {
-    let depths = depths(arguments, bank.depth())?;
-    let mut given = depths.iter().map(|depth| bank.check_depth(*depth));
-    given.try_for_each(|checked| checked)?;
-    let prior = arguments.hypotheses.prior.as_ref();
-    let prior = prior.map(|file| bank.read_prior(file)).transpose()?;
-    let sweeps = Sweeps::new(arguments, question, records, &depths, bank.reference())?;
-    let (answer, place) = question.locate(bank, prior.as_deref(), &sweeps.get())?;
-    let place = Some((bank, &place));
-    draw(arguments, &sweeps.records, &answer, place)?;
-    let mut rows = robustly_asked(arguments, question, &depths, &sweeps.records);
-    rows.append(answer.rows(place));
-    Ok((answer, rows))
-}
-
-/// What was asked of the robust model.
-fn robustly_asked(
-    arguments: &DetectArguments,
-    question: &RobustQuestion<'_>,
-    depths: &[f64],
-    records: &[Record],
-) -> Rows {
-    let mut rows = asked(arguments, depths, records);
-    let files = arguments.model.reference_sweeps.iter();
-    let files: Vec<_> = files.map(|file| file.display().to_string()).collect();
-    rows.value("reference_sweeps", files);
-    rows.value("known", json!(question.known));
-    rows.value("sure", question.sure);
-    rows.value("zeroed", question.is_zeroed);
-    rows
-}
-
-/// Writes the figure, if one is wanted.
-///
-/// Implements: CLI-163.
-fn draw(
-    arguments: &DetectArguments,
-    records: &[Record],
-    answer: &RobustAnswer,
-    place: Option<(&Bank, &RobustPlace)>,
-) -> Result<(), CliError> {
-    if let Some(path) = &arguments.hypotheses.figure {
-        write(path, &explanation_figure(records, answer, place)?)?;
+    /// The map without an inclusion.
+    fn reference(&self) -> &'a ForceMap {
+        match self.between {
+            Between::Maps(_, reference) => reference,
+            Between::Bank(bank, _) => bank.reference(),
+        }
     }
-    Ok(())
+
+    /// The bank, if there is one.
+    pub fn bank(&self) -> Option<&'a Bank> {
+        match self.between {
+            Between::Maps(..) => None,
+            Between::Bank(bank, _) => Some(bank),
+        }
+    }
+
+    /// Reads a record, without what is outside the maps if --trim is given.
+    pub fn read(&self, path: &Path) -> Result<Record, CliError> {
+        let record = super::read(self.arguments, self.layout, path)?;
+        trimmed(self.arguments, record, self.reference().table())
+    }
+
+    /// The sweeps of a place, and behind them the reference sweeps, at the first depth.
+    pub fn sweeps<'r>(&'r self, records: &'r [Record]) -> Vec<RobustSweep<'r>> {
+        let all = records.iter().chain(&self.references).enumerate();
+        let sweep = |(number, record)| {
+            let depth = *self.depths.get(number).unwrap_or(&self.depths[0]);
+            RobustSweep {
+                record,
+                depth,
+                changes: self.changes[&depth.to_bits()].as_ref(),
+                is_reference: number >= records.len(),
+            }
+        };
+        all.map(sweep).collect()
+    }
+
+    /// The detector for records over the positions of these sweeps.
+    pub fn detector(&self, sweeps: &[RobustSweep<'_>]) -> Result<Detector<'_>, Refusal> {
+        Ok(match &self.between {
+            Between::Maps(hypotheses, _) => {
+                Detector::Maps(self.question.detector(*hypotheses, sweeps)?)
+            }
+            Between::Bank(bank, prior) => {
+                let (detector, of) = self.question.bank_detector(bank, *prior, sweeps)?;
+                Detector::Bank(detector, of)
+            }
+        })
+    }
+
+    /// What was asked of the records of these traces; `records` begin with theirs.
+    pub fn rows(&self, traces: &[PathBuf], records: &[Record]) -> Rows {
+        let mut rows = asked(self.arguments, traces, &self.depths, records);
+        let files = self.arguments.model.reference_sweeps.iter();
+        let files: Vec<_> = files.map(|file| file.display().to_string()).collect();
+        rows.value("reference_sweeps", files);
+        rows.value("known", json!(self.question.known));
+        rows.value("sure", self.question.sure);
+        rows.value("zeroed", self.question.is_zeroed);
+        rows
+    }
 }
 
-/// The depth of each trace, m.
-fn depths(arguments: &DetectArguments, of_bank: f64) -> Result<Vec<f64>, CliError> {
-    let sweeps = arguments.traces.len();
+/// The detector of the inclusion of a map, or of any of a bank.
+pub enum Detector<'a> {
+    Maps(RobustDetector<'a>),
+    Bank(RobustDetector<'a>, BankHypotheses<'a>),
+}
+
+impl Detector<'_> {
+    /// What these sweeps say, and by a bank where the inclusion lies.
+    pub fn judge(
+        &self,
+        sweeps: &[RobustSweep<'_>],
+    ) -> Result<(RobustAnswer, Option<RobustPlace>), Refusal> {
+        let forces: Vec<_> = sweeps.iter().map(|sweep| sweep.record.forces()).collect();
+        match self {
+            Detector::Maps(detector) => Ok((detector.judge(&forces)?, None)),
+            Detector::Bank(detector, hypotheses) => {
+                let answer = detector.judge(&forces)?;
+                let place = hypotheses.place(&answer);
+                Ok((answer, Some(place)))
+            }
+        }
+    }
+}
+
+/// The depth of each of so many sweeps, m.
+fn depths(arguments: &DetectArguments, of_bank: f64, sweeps: usize) -> Result<Vec<f64>, CliError> {
     match arguments.sweep.depths[..] {
         [] => Ok(vec![of_bank; sweeps]),
         [depth] => Ok(vec![depth; sweeps]),
         ref depths if depths.len() == sweeps => Ok(depths.to_vec()),
         ref depths => {
-            let count = depths.len();
-            refuse!("--depth-mm has {count} depths for {sweeps} traces; give one, or one for each")
+            let (count, of) = (depths.len(), if sweeps == 1 { "sweep" } else { "sweeps" });
+            refuse!(
+                "--depth-mm has {count} depths for {sweeps} {of} of a place; give one, or one for each"
+            )
         }
-    }
-}
-
-/// The sweeps of the place, and reference sweeps after them, with the gels beside that of the maps.
-struct Sweeps {
-    records: Vec<Record>,
-    depths: Vec<f64>,
-    /// The number of those of the place.
-    of_place: usize,
-    /// By the bits of the depth.
-    changes: BTreeMap<u64, Option<GelChanges>>,
-}
-
-impl Sweeps {
-    fn new(
-        arguments: &DetectArguments,
-        question: &RobustQuestion<'_>,
-        records: Vec<Record>,
-        depths: &[f64],
-        reference: &ForceMap,
-    ) -> Result<Sweeps, CliError> {
-        let file = arguments.model.gel_uncertainty.as_ref();
-        let uncertainty = file.map(|file| GelUncertainty::read(file)).transpose()?;
-        let uncertainty = uncertainty.unwrap_or_default().beside(question.known);
-        let trim = |record| trimmed(arguments, record, reference.table());
-        let records = records
-            .into_iter()
-            .map(trim)
-            .collect::<Result<Vec<_>, _>>()?;
-        let mut changes = BTreeMap::new();
-        for &depth in depths {
-            if let Entry::Vacant(entry) = changes.entry(depth.to_bits()) {
-                let name = reference.phantom().map_or("", Phantom::name);
-                let found = GelChanges::new(reference, depth, &uncertainty);
-                entry.insert(found.map_err(CliError::fem(name))?);
-            }
-        }
-        let mut depths = depths.to_vec();
-        let of_place = depths.len();
-        depths.resize(records.len(), depths[0]);
-        Ok(Sweeps {
-            records,
-            depths,
-            of_place,
-            changes,
-        })
-    }
-
-    fn get(&self) -> Vec<RobustSweep<'_>> {
-        let sweeps = self.records.iter().zip(&self.depths).enumerate();
-        let sweep = |(number, (record, &depth))| RobustSweep {
-            record,
-            depth,
-            changes: self.changes[&depth.to_bits()].as_ref(),
-            is_reference: number >= self.of_place,
-        };
-        sweeps.map(sweep).collect()
     }
 }
 

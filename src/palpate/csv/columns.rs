@@ -1,0 +1,459 @@
+//! Which column of a file holds which quantity: by the names that this project writes, by those that laboratories use, or as the user says.
+
+use std::str::FromStr;
+
+use super::split;
+use crate::decimal::parse_scaled;
+use crate::refusal::{Refusal, shortened};
+
+/// What a column can be called, and for each name the power of ten from its unit to SI. Of several groups of names the first that
+/// the header has counts.
+///
+/// Implements: CON-002.
+pub type Column = &'static [&'static [(&'static str, i32)]];
+
+/// Other names of a quantity, in small letters and with `_` between their parts, without a unit.
+///
+/// Implements: MAP-045.
+const SYNONYMS: &[(&str, &[&str])] = &[
+    (
+        "normal_force",
+        &[
+            "force_normal",
+            "fz",
+            "fn",
+            "force_z",
+            "z_force",
+            "wrench_force_z",
+            "force",
+            "load",
+            "f",
+        ],
+    ),
+    (
+        "lateral_force",
+        &[
+            "force_lateral",
+            "fx",
+            "ft",
+            "force_x",
+            "x_force",
+            "wrench_force_x",
+            "shear_force",
+        ],
+    ),
+    ("position", POSITIONS),
+    ("lateral", POSITIONS),
+    ("depth", &["indentation", "indentation_depth"]),
+    ("time", &["t", "timestamp", "elapsed_time"]),
+];
+const POSITIONS: &[&str] = &[
+    "pos",
+    "x",
+    "x_position",
+    "position_x",
+    "lateral_position",
+    "pose_position_x",
+];
+
+/// How a file is laid out, where its header does not tell.
+///
+/// ```
+/// use palpate::csv::Layout;
+/// use palpate::trace::Trace;
+///
+/// let text = "Well,E5\nZ (mm),Fx (N),Raw_Force(N)\n0,0,-1.5\n1,0,-1.75\n";
+/// let layout = "position=Z (mm), normal=-Raw_Force(N)".parse::<Layout>()?;
+/// let trace = Trace::from_csv_as(text, "E5.csv", &layout)?;
+/// assert_eq!(trace.record(None)?.forces().normal, [1.5, 1.75]);
+/// # Ok::<(), palpate::refusal::Refusal>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Layout {
+    columns: Vec<Stated>,
+    /// Lines that are left out at the start of the file.
+    pub skipped: usize,
+}
+
+/// A column as the user states it: `position=Z_Position(mm)`, `normal=-AI1*500[mN]`.
+#[derive(Debug, Clone, PartialEq)]
+struct Stated {
+    /// As in [`key`].
+    quantity: String,
+    /// The name in the header, or the number from 1.
+    name: String,
+    factor: f64,
+    unit: Option<String>,
+}
+
+/// What a column holds in the words of `--columns`, by the beginning of its name.
+fn key(quantity: &str) -> &str {
+    match quantity {
+        "lateral" => "position",
+        "normal_force" => "normal",
+        "lateral_force" => "lateral",
+        other => other,
+    }
+}
+
+impl FromStr for Layout {
+    type Err = Refusal;
+
+    /// Reads a list such as `position=Z(mm), normal=-Load[mN]`: a quantity (position, time, depth, normal, lateral), a name of the
+    /// header or a number from 1, before it a sign, behind it `*` and a factor and a unit in square brackets.
+    ///
+    /// Implements: MAP-046.
+    fn from_str(text: &str) -> Result<Layout, Refusal> {
+        let columns = split(text, ',').map(Stated::parse);
+        Ok(Layout {
+            columns: columns.collect::<Result<_, _>>()?,
+            skipped: 0,
+        })
+    }
+}
+
+impl Layout {
+    /// Checks that a table of `columns` has what is stated.
+    ///
+    /// Implements: MAP-046.
+    pub(super) fn check(&self, columns: &[Column]) -> Result<(), Refusal> {
+        let quantities = columns.iter().copied().flatten();
+        let keys: Vec<&str> = quantities.map(|names| key(quantity_of(names))).collect();
+        let mut stated = self.columns.iter().map(|stated| &*stated.quantity);
+        match stated.find(|stated| !keys.contains(stated)) {
+            None => Ok(()),
+            Some(other) => Err(Refusal::state(
+                format!("the columns have {other}, which such a table does not have"),
+                format!("give {}", keys.join(", ")),
+            )),
+        }
+    }
+}
+
+/// The quantity of the names of a column.
+fn quantity_of(names: &[(&'static str, i32)]) -> &'static str {
+    names[0]
+        .0
+        .rsplit_once('_')
+        .map_or("", |(quantity, _)| quantity)
+}
+
+/// The units in the names of a column.
+fn units_of(names: &[(&'static str, i32)]) -> Vec<&'static str> {
+    names
+        .iter()
+        .filter_map(|(name, _)| name.rsplit('_').next())
+        .collect()
+}
+
+impl Stated {
+    fn parse(text: &str) -> Result<Stated, Refusal> {
+        let wrong = || {
+            let text = format!("{:?} in the columns", shortened(text));
+            Refusal::state(
+                text,
+                "write each as in position=Z_Position(mm) or normal=-Load*0.5[mN]",
+            )
+        };
+        let (quantity, name) = text.split_once('=').ok_or_else(wrong)?;
+        let unquoted = |name: &str| name.trim().trim_matches('"').trim().to_owned();
+        let (quantity, name) = (quantity.trim(), &*unquoted(name));
+        let (name, unit) = match name
+            .strip_suffix(']')
+            .and_then(|name| name.rsplit_once('['))
+        {
+            Some((name, unit)) => (name.trim(), Some(unit.trim().to_lowercase())),
+            None => (name, None),
+        };
+        let (name, sign) = match name.strip_prefix('-') {
+            Some(name) => (name, -1.0),
+            None => (name, 1.0),
+        };
+        let factor = name.rsplit_once('*').and_then(|(name, factor)| {
+            let factor = parse_scaled(factor.trim(), 0)?;
+            Some((name.trim(), factor)).filter(|_| factor != 0.0)
+        });
+        let (name, factor) = factor.unwrap_or((name, 1.0));
+        let name = unquoted(name);
+        let known = ["position", "time", "depth", "normal", "lateral"];
+        if name.is_empty() || !known.contains(&quantity) {
+            return Err(wrong());
+        }
+        Ok(Stated {
+            quantity: quantity.into(),
+            name,
+            factor: sign * factor,
+            unit,
+        })
+    }
+}
+
+/// A column that was found.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Found {
+    /// Its place in the header, from 0.
+    pub place: usize,
+    /// The name that this project writes for it, with its unit.
+    pub name: &'static str,
+    /// The power of ten from its unit to SI.
+    pub power: i32,
+    /// What its numbers are multiplied by.
+    pub factor: f64,
+    /// Whether its name in the header is another one.
+    pub is_synonym: bool,
+    /// Whether its unit is known.
+    pub has_unit: bool,
+}
+
+impl Found {
+    /// The same in the unit that a row of units gives, if it is one.
+    pub fn in_unit(self, column: Column, unit: &str) -> Option<Found> {
+        let quantity = self
+            .name
+            .rsplit_once('_')
+            .map_or("", |(quantity, _)| quantity);
+        let unit = unit.trim_matches(['(', ')', '[', ']']);
+        let (name, power) = of_unit(column.concat().as_slice(), quantity, unit)?;
+        Some(Found {
+            name,
+            power,
+            has_unit: true,
+            ..self
+        })
+    }
+}
+
+/// The name of a quantity in a unit, with its power of ten.
+fn of_unit(
+    names: &[(&'static str, i32)],
+    quantity: &str,
+    unit: &str,
+) -> Option<(&'static str, i32)> {
+    let ends = |name: &str| {
+        name.strip_prefix(quantity)?
+            .strip_prefix('_')
+            .map(str::to_owned)
+    };
+    let same =
+        |(name, _): &&(&str, i32)| ends(name).is_some_and(|own| own.eq_ignore_ascii_case(unit));
+    names.iter().find(same).copied()
+}
+
+/// The parts of a name with `_` between them, in small letters, and the unit behind it, if it ends with one of `units`.
+fn taken_apart(field: &str, units: &[&str]) -> (String, Option<String>) {
+    let lower = field.to_lowercase();
+    let parts: Vec<&str> = lower.split(|c: char| !c.is_alphanumeric()).collect();
+    let mut parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    let unit = parts
+        .last()
+        .filter(|last| parts.len() > 1 && units.contains(last));
+    let unit = unit.map(|unit| (*unit).to_owned());
+    parts.truncate(parts.len() - usize::from(unit.is_some()));
+    (parts.join("_"), unit)
+}
+
+/// Where in a header a column is.
+///
+/// Implements: MAP-030, MAP-033, MAP-045, MAP-046.
+pub(super) fn find(header: &[&str], column: Column, layout: &Layout) -> Result<Found, String> {
+    for names in column {
+        let quantity = quantity_of(names);
+        let mut stated = layout.columns.iter();
+        if let Some(stated) = stated.find(|stated| stated.quantity == key(quantity)) {
+            return stated.find(header, names, quantity);
+        }
+    }
+    for names in column {
+        if let Some(found) = named(header, names)? {
+            return Ok(found);
+        }
+    }
+    for has_unit in [true, false] {
+        for names in column {
+            if let Some(found) = synonymous(header, names, has_unit)? {
+                return Ok(found);
+            }
+        }
+    }
+    let names = column.iter().copied().flatten().map(|(name, _)| *name);
+    let names: Vec<_> = names.collect();
+    Err(format!("no column {}", names.join(" or ")))
+}
+
+/// The column with one of the names.
+fn named(header: &[&str], names: &[(&'static str, i32)]) -> Result<Option<Found>, String> {
+    let named = (0..).zip(header).filter_map(|(place, field)| {
+        let same = |(name, _): &&(&str, i32)| name.eq_ignore_ascii_case(field);
+        let &(name, power) = names.iter().find(same)?;
+        Some(Found {
+            place,
+            name,
+            power,
+            factor: 1.0,
+            is_synonym: false,
+            has_unit: true,
+        })
+    });
+    match named.collect::<Vec<_>>()[..] {
+        [] => Ok(None),
+        [only] => Ok(Some(only)),
+        [first, second, ..] => Err(format!("columns {} and {}", first.name, second.name)),
+    }
+}
+
+/// The column with one of the quantity's other names, and with a unit where it `has_unit`. A force without one is in N and a time in s; a
+/// length must have one.
+fn synonymous(
+    header: &[&str],
+    names: &[(&'static str, i32)],
+    has_unit: bool,
+) -> Result<Option<Found>, String> {
+    let (quantity, units) = (quantity_of(names), units_of(names));
+    let default = ["n", "s"].into_iter().find(|unit| *unit == units[0]);
+    let synonyms = SYNONYMS.iter().find(|(of, _)| *of == quantity);
+    let synonyms = synonyms.map_or(&[][..], |(_, synonyms)| *synonyms);
+    let found = (0..).zip(header).filter_map(|(place, field)| {
+        let (name, unit) = taken_apart(field, &units);
+        let is_named = name == quantity || synonyms.contains(&&*name);
+        let unit = unit.as_deref().or(default);
+        let (name, power) = of_unit(names, quantity, unit.unwrap_or(units[0]))?;
+        (is_named && unit.is_some() == has_unit).then_some(Found {
+            place,
+            name,
+            power,
+            factor: 1.0,
+            is_synonym: true,
+            has_unit,
+        })
+    });
+    match found.collect::<Vec<_>>()[..] {
+        [] => Ok(None),
+        [only] => Ok(Some(only)),
+        [first, second, ..] => {
+            let [first, second] = [first, second].map(|found| found.place + 1);
+            let quantity = quantity.replace('_', " ");
+            Err(format!("columns {first} and {second} for the {quantity}"))
+        }
+    }
+}
+
+impl Stated {
+    /// The column that was stated.
+    fn find(
+        &self,
+        header: &[&str],
+        names: &[(&'static str, i32)],
+        quantity: &str,
+    ) -> Result<Found, String> {
+        let by_name = header
+            .iter()
+            .position(|field| field.eq_ignore_ascii_case(&self.name));
+        let by_number = || {
+            self.name
+                .parse()
+                .ok()
+                .and_then(|number: usize| number.checked_sub(1))
+        };
+        let place = by_name
+            .or_else(by_number)
+            .filter(|place| *place < header.len());
+        let place = place.ok_or_else(|| format!("no column {:?}", shortened(&self.name)))?;
+        let units = units_of(names);
+        let of_name = || taken_apart(header[place], &units).1;
+        let unit = self.unit.clone().or_else(of_name);
+        let found = of_unit(names, quantity, unit.as_deref().unwrap_or(units[0]));
+        let (name, power) = found.ok_or_else(|| {
+            let (unit, units) = (unit.clone().unwrap_or_default(), units.join(" or "));
+            format!("column {} in {unit}, which must be in {units},", place + 1)
+        })?;
+        Ok(Found {
+            place,
+            name,
+            power,
+            factor: self.factor,
+            is_synonym: false,
+            has_unit: unit.is_some(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::csv::Rows;
+
+    const COLUMNS: [Column; 2] = [
+        &[
+            &[("position_mm", -3), ("position_m", 0)],
+            &[("time_s", 0), ("time_ms", -3)],
+        ],
+        &[&[("normal_force_n", 0), ("normal_force_mn", -3)]],
+    ];
+    const TEXT: &str = "pos (mm),t,AI1,Load (N)\n1,0.25,-2,-3\n";
+
+    fn read(text: &str, layout: &str) -> Result<[f64; 2], String> {
+        let layout = layout
+            .parse()
+            .map_err(|refusal: Refusal| refusal.to_string())?;
+        let rows = Rows::parse_as(text, COLUMNS, "a trace", &layout);
+        Ok(rows.map_err(|refusal| refusal.to_string())?.rows[0].1)
+    }
+
+    // Verifies: MAP-046, MAP-045.
+    #[test]
+    fn columns_are_taken_as_they_are_stated() {
+        for (layout, expected) in [
+            ("normal=Load (N)", [1e-3, -3.0]),
+            ("normal=-Load (N)", [1e-3, 3.0]),
+            (" normal = -ai1*0.5[mN] ", [1e-3, 1e-3]),
+            ("normal=-3*0.5[mN],position=1", [1e-3, 1e-3]),
+            ("time=t[ms], normal=4", [2.5e-4, -3.0]),
+            ("position=t[m]", [0.25, -3.0]),
+            ("normal=-\"Load (N)\"[mN]", [1e-3, 3e-3]),
+            ("normal=\"-Load (N)[mN]\"", [1e-3, 3e-3]),
+        ] {
+            assert_eq!(read(TEXT, layout), Ok(expected), "{layout}");
+        }
+        // Without a word the position counts, and of the forces the one with a name.
+        assert_eq!(
+            Rows::parse(TEXT, COLUMNS, "").unwrap().rows[0].1,
+            [1e-3, -3.0]
+        );
+        let ros = "pose.position.x (m),wrench.force.z\n0.001,-3\n";
+        assert_eq!(
+            Rows::parse(ros, COLUMNS, "").unwrap().rows[0].1,
+            [1e-3, -3.0]
+        );
+    }
+
+    // Verifies: MAP-046.
+    #[test]
+    fn columns_that_are_not_there_are_refused() {
+        for (layout, expected) in [
+            (
+                "normal",
+                "\"normal\" in the columns; write each as in position=",
+            ),
+            (
+                "force=Load (N)",
+                "\"force=Load (N)\" in the columns; write each",
+            ),
+            ("normal=", "\"normal=\" in the columns; write each"),
+            (
+                "depth=t[mm]",
+                "the columns have depth, which such a table does not have; give position, time, normal",
+            ),
+            ("normal=Last", "line 1: no column \"Last\" in the header"),
+            ("normal=5[N]", "line 1: no column \"5\" in the header"),
+            ("normal=0[N]", "line 1: no column \"0\" in the header"),
+            ("normal=AI1", "line 1: column 3 has no unit in the header"),
+            (
+                "normal=AI1[V]",
+                "line 1: column 3 in v, which must be in n or mn, in the header",
+            ),
+        ] {
+            let found = read(TEXT, layout).unwrap_err();
+            assert!(found.starts_with(expected), "{layout}: {found}");
+        }
+    }
+}

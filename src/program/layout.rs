@@ -1,0 +1,51 @@
+//! How the CSV files of a laboratory are laid out: `--columns` and `--skip-rows`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use clap::Args;
+use palpate::csv::Layout;
+use palpate::file::{from_toml, read};
+use palpate::refusal::Refusal;
+use serde::Deserialize;
+
+/// The options.
+#[derive(Debug, Args)]
+pub struct LayoutArguments {
+    /// Which column holds what, if its name does not tell: a list such as 'position=Z(mm), normal=-Load*0.5[mN]' of position, time, depth,
+    /// normal and lateral, each with a name of the header or a number from 1; or a TOML file with such entries in its table [columns]
+    #[arg(long, value_name = "LIST|FILE.toml", allow_hyphen_values = true)]
+    columns: Option<String>,
+    /// Lines to leave out at the start of a file
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    skip_rows: usize,
+}
+
+/// A file with a table of columns.
+#[derive(Deserialize)]
+struct WithColumns {
+    columns: BTreeMap<String, String>,
+}
+
+impl LayoutArguments {
+    /// The layout that they state.
+    ///
+    /// Implements: CLI-174.
+    pub fn get(&self) -> Result<Layout, Refusal> {
+        let mut layout = match self.columns.as_deref() {
+            None => Layout::default(),
+            Some(file) if file.ends_with(".toml") => read(Path::new(file), |text, file| {
+                let table: WithColumns = from_toml(text, file)?;
+                let pairs = table.columns.iter();
+                let list: Vec<_> = pairs
+                    .map(|(key, name)| format!("{key}=\"{name}\""))
+                    .collect();
+                let layout = list.join(",").parse();
+                layout.map_err(|refusal: Refusal| refusal.in_file(file))
+            })?,
+            Some(list) => list.parse()?,
+        };
+        layout.skipped = self.skip_rows;
+        Ok(layout)
+    }
+}
