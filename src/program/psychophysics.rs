@@ -21,7 +21,8 @@ use palpate_paper::psychophysics::{
 #[derive(Debug, Args)]
 pub struct PsychophysicsArguments {
     /// Counts of correct answers: a CSV file with subject, condition, trials and one column per inclusion, its name ending in its depth
-    /// in mm; one row per subject and condition [default: Table 1 of the paper]
+    /// in mm; one row per subject and condition. Or a row per trial with subject, condition, inclusion and correct, as PsychoPy and jsPsych
+    /// write them [default: Table 1 of the paper]
     #[arg(value_name = "CSV")]
     counts: Option<PathBuf>,
     /// Force map without inclusion, for the noise in newtons and the predicted proportions correct

@@ -6,6 +6,7 @@
 //! | `experiment.rs` | one subject's experiment and the answers so far |
 //! | `observer.rs` | one sample played through device and servo, as it was felt; the ideal observer, who decides by Θ |
 //! | `table.rs`, `table1.csv` | counts of right answers: Table 1 and files of its form |
+//! | `trials.rs` | files with a row for each trial |
 //! | `analysis.rs` | everything that the counts say by themselves, from the files below |
 //! | `rates.rs` | shares, intervals, γ |
 //! | `dispersion.rs`, `beta_binomial.rs` | subjects who differ |
@@ -43,6 +44,7 @@ mod search;
 mod table;
 #[cfg(test)]
 mod tests;
+mod trials;
 
 pub use analysis::{Analysis, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis, analyse};
 pub use beta_binomial::BetaBinomial;

@@ -1,4 +1,4 @@
-//! Counts of right answers: Table 1 of the paper, and files of the same form.
+//! Counts of right answers: Table 1 of the paper, files of the same form, and files with a row for each trial.
 //!
 //! ```text
 //! subject,condition,trials,2.6,4.6,6.6,8.6
@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::choice::Count;
+use super::trials;
 use palpate::csv::{fields, header_and_rows, wrong_header};
 use palpate::decimal::parse_scaled;
 use palpate::refusal::{Refusal, shortened};
@@ -100,15 +101,28 @@ impl AnswerTable {
     /// # Errors
     /// The first line that is wrong.
     ///
-    /// Implements: PSY-020.
+    /// Implements: PSY-020, PSY-021.
     pub fn from_csv(text: &str, file: &str) -> Result<AnswerTable, Refusal> {
         let at = |line| move |refusal: Refusal| refusal.at(line).in_file(file);
         let ((header_line, header), rows) = header_and_rows(text);
-        let inclusions = inclusions(header).map_err(at(header_line))?;
+        let (inclusions, subjects) = match trials::places(header) {
+            Some(places) => {
+                let counted = trials::counted(places, rows);
+                counted.map_err(|refusal| refusal.in_file(file))?
+            }
+            None => {
+                let inclusions = inclusions(header).map_err(at(header_line))?;
+                let subject = |(line, row)| {
+                    let (name, subject) = subject(header, row, &inclusions).map_err(at(line))?;
+                    Ok((line, name, subject))
+                };
+                let subjects = rows.map(subject).collect::<Result<_, Refusal>>()?;
+                (inclusions, subjects)
+            }
+        };
         let mut conditions: Vec<Condition> = Vec::new();
         let mut lines = HashMap::new();
-        for (line, row) in rows {
-            let (name, subject) = subject(header, row, &inclusions).map_err(at(line))?;
+        for (line, name, subject) in subjects {
             if let Some(first) = lines.insert((name.clone(), subject.name.clone()), line) {
                 let again = format!("subject {:?} again under condition {name:?}", subject.name);
                 let once = format!("keep one row; the first is line {first}");
@@ -171,19 +185,33 @@ fn inclusions(header: &str) -> Result<Vec<Column>, Refusal> {
     let names = rest.ok_or_else(|| wrong_header(header, EXPECTED_HEADER))?;
     let mut inclusions: Vec<Column> = Vec::new();
     for (number, name) in (KEYS.len() + 1..).zip(names) {
-        let refused = |expected| refused(&format!("header, column {number}"), name, expected);
-        let last = name.split_whitespace().next_back();
-        let depth = last
-            .and_then(|word| parse_scaled(word, -3))
-            .filter(|&depth| depth > 0.0 && is_plain(name))
-            .ok_or_else(|| refused(EXPECTED_INCLUSION))?;
+        let place = format!("header, column {number}");
+        let column = column(&place, name)?;
         if inclusions.iter().any(|other| other.name == *name) {
-            return Err(refused("each inclusion once"));
+            return Err(refused(&place, name, "each inclusion once"));
         }
-        let name = name.to_string();
-        inclusions.push(Column { name, depth });
+        inclusions.push(column);
     }
     Ok(inclusions)
+}
+
+/// The inclusion of a name, which stands at a `place`.
+pub(super) fn column(place: &str, name: &str) -> Result<Column, Refusal> {
+    let last = name.split_whitespace().next_back();
+    let depth = last
+        .and_then(|word| parse_scaled(word, -3))
+        .filter(|&depth| depth > 0.0 && is_plain(name))
+        .ok_or_else(|| refused(place, name, EXPECTED_INCLUSION))?;
+    let name = name.to_string();
+    Ok(Column { name, depth })
+}
+
+/// A name in a column, which can be printed.
+pub(super) fn plain(column: &str, name: &str) -> Result<String, Refusal> {
+    if name.is_empty() || !is_plain(name) {
+        return Err(refused(column, name, "a name of printable characters"));
+    }
+    Ok(name.into())
 }
 
 /// The condition and the subject of a row.
@@ -191,9 +219,7 @@ fn subject(header: &str, row: &str, inclusions: &[Column]) -> Result<(String, Su
     let fields = fields(row, KEYS.len() + inclusions.len(), header)?;
     let (keys, correct) = fields.split_at(KEYS.len());
     for (column, name) in KEYS.iter().zip(&keys[..2]) {
-        if name.is_empty() || !is_plain(name) {
-            return Err(refused(column, name, "a name of printable characters"));
-        }
+        plain(column, name)?;
     }
     let whole = |column: &str, text: &str, first: u32, last: u32, of: &str| {
         let number = text.parse().ok();
@@ -213,7 +239,7 @@ fn subject(header: &str, row: &str, inclusions: &[Column]) -> Result<(String, Su
     Ok((keys[1].into(), subject))
 }
 
-fn refused(column: &str, found: &str, expected: &str) -> Refusal {
+pub(super) fn refused(column: &str, found: &str, expected: &str) -> Refusal {
     Refusal::value(column, format!("{:?}", shortened(found)), expected)
 }
 

@@ -87,3 +87,54 @@ fn what_is_no_table_is_refused_with_line_column_and_value() {
     assert_eq!(empty.to_string(), words);
     assert!(AnswerTable::from_csv("", "t").is_err());
 }
+
+// Verifies: PSY-021.
+#[test]
+fn a_row_for_each_trial_is_counted() {
+    // As PsychoPy writes it, in random order, with a row of instructions.
+    let text = "participant,condition,thisN,stimulus,key_resp.corr,\"note, free\"\n\
+        ,,,,,\"read, please\"\n\
+        2,glove,0,6.6,0,\n2,glove,1,soft 2.6,1,\n1,glove,0,soft 2.6,1.0,\n1,glove,1,6.6,1.0,\n\
+        1,glove,2,soft 2.6,0.0,\n1,glove,3,6.6,True,\n1,none,0,6.6,false,\n1,none,1,soft 2.6,TRUE,\n";
+    let counts =
+        "subject,condition,trials,soft 2.6,6.6\n2,glove,1,1,0\n1,glove,2,1,2\n1,none,1,1,0\n";
+    let found = AnswerTable::from_csv(text, "trials.csv").unwrap();
+    assert_eq!(found, AnswerTable::from_csv(counts, "counts.csv").unwrap());
+    let head = "subject,condition,inclusion,correct\n";
+    for (rows, expected) in [
+        (
+            "1,a,2.6,2\n",
+            "t.csv:2: correct = \"2\", but must be 1 or 0, or true or false",
+        ),
+        (
+            "1,a,soft,1\n",
+            "t.csv:2: inclusion = \"soft\", but must be the name of an inclusion",
+        ),
+        (",a,2.6,1\n", "t.csv:2: subject = \"\", but must be a name"),
+        (
+            "1,,2.6,1\n",
+            "t.csv:2: condition = \"\", but must be a name",
+        ),
+        (
+            "1,a,2.6,1\n1,a,2.6,1\n1,a,6.6,0\n",
+            "t.csv:2: subject \"1\" has 2 trials of \"2.6\" and 1 of \"6.6\"; give as many",
+        ),
+        (
+            "1,a,2.6,\n",
+            "t.csv:1: no rows under the header; give at least one",
+        ),
+    ] {
+        let error = AnswerTable::from_csv(&format!("{head}{rows}"), "t.csv")
+            .unwrap_err()
+            .to_string();
+        assert!(error.starts_with(expected), "{error}");
+    }
+    let many = "1,a,2.6,1\n".repeat(1001);
+    let error = AnswerTable::from_csv(&format!("{head}{many}"), "t.csv").unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("1001 trials of an inclusion; give at most 1000"),
+        "{error}"
+    );
+}
