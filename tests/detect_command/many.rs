@@ -60,7 +60,7 @@ fn each_record_of_a_folder_is_judged_alone() {
     let csv: Vec<_> = text(&csv.stdout).lines().map(String::from).collect();
     assert_eq!(
         csv[0],
-        "file,decision,posterior_h1,theta,false_alarm,miss,causes,error"
+        "trace,decision,posterior_h1,theta,false_alarm,miss,causes,error"
     );
     let of = |line: &Value| {
         let number = |key: &str| line[key].to_string();

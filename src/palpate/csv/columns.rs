@@ -118,7 +118,7 @@ impl Layout {
     /// Implements: MAP-046.
     pub(super) fn check(&self, columns: &[Column]) -> Result<(), Refusal> {
         let quantities = columns.iter().copied().flatten();
-        let keys: Vec<&str> = quantities.map(|names| key(quantity_of(names))).collect();
+        let keys: Vec<&str> = quantities.map(|names| key(quantity(names))).collect();
         let mut stated = self.columns.iter().map(|stated| &*stated.quantity);
         match stated.find(|stated| !keys.contains(stated)) {
             None => Ok(()),
@@ -128,22 +128,6 @@ impl Layout {
             )),
         }
     }
-}
-
-/// The quantity of the names of a column.
-fn quantity_of(names: &[(&'static str, i32)]) -> &'static str {
-    names[0]
-        .0
-        .rsplit_once('_')
-        .map_or("", |(quantity, _)| quantity)
-}
-
-/// The units in the names of a column.
-fn units_of(names: &[(&'static str, i32)]) -> Vec<&'static str> {
-    names
-        .iter()
-        .filter_map(|(name, _)| name.rsplit('_').next())
-        .collect()
 }
 
 impl Stated {
@@ -199,57 +183,70 @@ pub(super) struct Found {
     pub power: i32,
     /// What its numbers are multiplied by.
     pub factor: f64,
-    /// Whether its name in the header is another one.
-    pub is_synonym: bool,
-    /// Whether its unit is known.
-    pub has_unit: bool,
+    /// How it was found.
+    pub by: By,
+}
+
+/// How a column is found: by the first that finds one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum By {
+    /// By the name that this project writes, or as the user states it.
+    Name,
+    /// By another name with a unit.
+    Synonym,
+    /// The same without a unit.
+    Unitless,
 }
 
 impl Found {
     /// The same in the unit that a row of units gives, if it is one.
     pub fn in_unit(self, column: Column, unit: &str) -> Option<Found> {
-        let quantity = self
-            .name
-            .rsplit_once('_')
-            .map_or("", |(quantity, _)| quantity);
         let unit = unit.trim_matches(['(', ')', '[', ']']);
-        let (name, power) = of_unit(column.concat().as_slice(), quantity, unit)?;
+        let of_quantity = |names: &&&[Named]| names.contains(&(self.name, self.power));
+        let names = column.iter().find(of_quantity)?;
+        let (name, power) = in_unit(names, unit)?;
+        let by = match self.by {
+            By::Unitless => By::Synonym,
+            by => by,
+        };
         Some(Found {
             name,
             power,
-            has_unit: true,
+            by,
             ..self
         })
     }
 }
 
-/// The name of a quantity in a unit, with its power of ten.
-fn of_unit(
-    names: &[(&'static str, i32)],
-    quantity: &str,
-    unit: &str,
-) -> Option<(&'static str, i32)> {
-    let ends = |name: &str| {
-        name.strip_prefix(quantity)?
-            .strip_prefix('_')
-            .map(str::to_owned)
-    };
-    let same =
-        |(name, _): &&(&str, i32)| ends(name).is_some_and(|own| own.eq_ignore_ascii_case(unit));
+/// One of the names of a quantity, which ends in its unit, with its power of ten.
+type Named = (&'static str, i32);
+
+/// The quantity of names.
+fn quantity(names: &[Named]) -> &'static str {
+    let apart = names[0].0.rsplit_once('_');
+    apart.map_or("", |(quantity, _)| quantity)
+}
+
+/// The unit at the end of a name.
+fn unit((name, _): &Named) -> &'static str {
+    name.rsplit('_').next().unwrap_or("")
+}
+
+/// The name in a unit.
+fn in_unit(names: &[Named], of: &str) -> Option<Named> {
+    let same = |name: &&Named| unit(name).eq_ignore_ascii_case(of);
     names.iter().find(same).copied()
 }
 
-/// The parts of a name with `_` between them, in small letters, and the unit behind it, if it ends with one of `units`.
-fn taken_apart(field: &str, units: &[&str]) -> (String, Option<String>) {
+/// The parts of a field of the header with `_` between them, in small letters, and the name in the unit behind them, if there is one.
+fn taken_apart(field: &str, names: &[Named]) -> (String, Option<Named>) {
     let lower = field.to_lowercase();
-    let parts: Vec<&str> = lower.split(|c: char| !c.is_alphanumeric()).collect();
-    let mut parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-    let unit = parts
-        .last()
-        .filter(|last| parts.len() > 1 && units.contains(last));
-    let unit = unit.map(|unit| (*unit).to_owned());
-    parts.truncate(parts.len() - usize::from(unit.is_some()));
-    (parts.join("_"), unit)
+    let parts = lower.split(|c: char| !c.is_alphanumeric());
+    let mut parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+    let last = parts.last().filter(|_| parts.len() > 1);
+    let named = last.and_then(|last| in_unit(names, last));
+    parts.truncate(parts.len() - usize::from(named.is_some()));
+    (parts.join("_"), named)
 }
 
 /// Where in a header a column is.
@@ -257,21 +254,31 @@ fn taken_apart(field: &str, units: &[&str]) -> (String, Option<String>) {
 /// Implements: MAP-030, MAP-033, MAP-045, MAP-046.
 pub(super) fn find(header: &[&str], column: Column, layout: &Layout) -> Result<Found, String> {
     for names in column {
-        let quantity = quantity_of(names);
         let mut stated = layout.columns.iter();
-        if let Some(stated) = stated.find(|stated| stated.quantity == key(quantity)) {
-            return stated.find(header, names, quantity);
+        if let Some(stated) = stated.find(|stated| stated.quantity == key(quantity(names))) {
+            return stated.find(header, names);
         }
     }
-    for names in column {
-        if let Some(found) = named(header, names)? {
-            return Ok(found);
-        }
-    }
-    for has_unit in [true, false] {
+    for by in [By::Name, By::Synonym, By::Unitless] {
         for names in column {
-            if let Some(found) = synonymous(header, names, has_unit)? {
-                return Ok(found);
+            let found = (0..).zip(header).filter_map(|(place, field)| {
+                let (name, power) = read(field, names, by)?;
+                Some(Found {
+                    place,
+                    name,
+                    power,
+                    factor: 1.0,
+                    by,
+                })
+            });
+            match found.collect::<Vec<_>>()[..] {
+                [] => {}
+                [only] => return Ok(only),
+                [first, second, ..] => {
+                    let (first, second) = (first.place + 1, second.place + 1);
+                    let quantity = quantity(names).replace('_', " ");
+                    return Err(format!("columns {first} and {second} for the {quantity}"));
+                }
             }
         }
     }
@@ -280,99 +287,55 @@ pub(super) fn find(header: &[&str], column: Column, layout: &Layout) -> Result<F
     Err(format!("no column {}", names.join(" or ")))
 }
 
-/// The column with one of the names.
-fn named(header: &[&str], names: &[(&'static str, i32)]) -> Result<Option<Found>, String> {
-    let named = (0..).zip(header).filter_map(|(place, field)| {
-        let same = |(name, _): &&(&str, i32)| name.eq_ignore_ascii_case(field);
-        let &(name, power) = names.iter().find(same)?;
-        Some(Found {
-            place,
-            name,
-            power,
-            factor: 1.0,
-            is_synonym: false,
-            has_unit: true,
-        })
-    });
-    match named.collect::<Vec<_>>()[..] {
-        [] => Ok(None),
-        [only] => Ok(Some(only)),
-        [first, second, ..] => Err(format!("columns {} and {}", first.name, second.name)),
+/// The name of a field of the header. A force without a unit is in N and a time in s; a length must have one.
+fn read(field: &str, names: &[Named], by: By) -> Option<Named> {
+    if by == By::Name {
+        return names
+            .iter()
+            .find(|(name, _)| name.eq_ignore_ascii_case(field))
+            .copied();
     }
-}
-
-/// The column with one of the quantity's other names, and with a unit where it `has_unit`. A force without one is in N and a time in s; a
-/// length must have one.
-fn synonymous(
-    header: &[&str],
-    names: &[(&'static str, i32)],
-    has_unit: bool,
-) -> Result<Option<Found>, String> {
-    let (quantity, units) = (quantity_of(names), units_of(names));
-    let default = ["n", "s"].into_iter().find(|unit| *unit == units[0]);
+    let (name, named) = taken_apart(field, names);
+    let quantity = quantity(names);
     let synonyms = SYNONYMS.iter().find(|(of, _)| *of == quantity);
-    let synonyms = synonyms.map_or(&[][..], |(_, synonyms)| *synonyms);
-    let found = (0..).zip(header).filter_map(|(place, field)| {
-        let (name, unit) = taken_apart(field, &units);
-        let is_named = name == quantity || synonyms.contains(&&*name);
-        let unit = unit.as_deref().or(default);
-        let (name, power) = of_unit(names, quantity, unit.unwrap_or(units[0]))?;
-        (is_named && unit.is_some() == has_unit).then_some(Found {
-            place,
-            name,
-            power,
-            factor: 1.0,
-            is_synonym: true,
-            has_unit,
-        })
-    });
-    match found.collect::<Vec<_>>()[..] {
-        [] => Ok(None),
-        [only] => Ok(Some(only)),
-        [first, second, ..] => {
-            let [first, second] = [first, second].map(|found| found.place + 1);
-            let quantity = quantity.replace('_', " ");
-            Err(format!("columns {first} and {second} for the {quantity}"))
-        }
-    }
+    let is_synonym = synonyms.is_some_and(|(_, synonyms)| synonyms.contains(&&*name));
+    let is_named = !quantity.is_empty() && name == quantity || is_synonym;
+    let named = named.or(Some(names[0]).filter(|first| ["n", "s"].contains(&unit(first))));
+    let named = match by {
+        By::Unitless => Some(names[0]).filter(|_| named.is_none()),
+        _ => named,
+    };
+    named.filter(|_| is_named)
 }
 
 impl Stated {
     /// The column that was stated.
-    fn find(
-        &self,
-        header: &[&str],
-        names: &[(&'static str, i32)],
-        quantity: &str,
-    ) -> Result<Found, String> {
+    fn find(&self, header: &[&str], names: &[Named]) -> Result<Found, String> {
         let by_name = header
             .iter()
             .position(|field| field.eq_ignore_ascii_case(&self.name));
-        let by_number = || {
-            self.name
-                .parse()
-                .ok()
-                .and_then(|number: usize| number.checked_sub(1))
-        };
-        let place = by_name
-            .or_else(by_number)
-            .filter(|place| *place < header.len());
+        let number = self
+            .name
+            .parse()
+            .ok()
+            .and_then(|number: usize| number.checked_sub(1));
+        let place = by_name.or(number).filter(|place| *place < header.len());
         let place = place.ok_or_else(|| format!("no column {:?}", shortened(&self.name)))?;
-        let units = units_of(names);
-        let of_name = || taken_apart(header[place], &units).1;
-        let unit = self.unit.clone().or_else(of_name);
-        let found = of_unit(names, quantity, unit.as_deref().unwrap_or(units[0]));
-        let (name, power) = found.ok_or_else(|| {
-            let (unit, units) = (unit.clone().unwrap_or_default(), units.join(" or "));
-            format!("column {} in {unit}, which must be in {units},", place + 1)
-        })?;
+        let named = match &self.unit {
+            None => taken_apart(header[place], names).1,
+            Some(unit) => Some(in_unit(names, unit).ok_or_else(|| {
+                let units: Vec<_> = names.iter().map(self::unit).collect();
+                let units = units.join(" or ");
+                format!("column {} in {unit}, which must be in {units},", place + 1)
+            })?),
+        };
+        let (name, power) = named.unwrap_or(names[0]);
         Ok(Found {
             place,
             name,
             power,
             factor: self.factor,
-            is_synonym: false,
-            has_unit: unit.is_some(),
+            by: named.map_or(By::Unitless, |_| By::Name),
         })
     }
 }

@@ -6,8 +6,8 @@ use crate::refusal::{Refusal, shortened};
 
 mod columns;
 
+use columns::{By, Found, find};
 pub use columns::{Column, Layout};
-use columns::{Found, find};
 
 /// Lines among which the header is looked for.
 const MOST_LINES_BEFORE: usize = 200;
@@ -73,13 +73,13 @@ impl<const N: usize> Rows<N> {
             notes.push(format!("line {line} gives the units"));
             (header.found, rows) = (found, &rows[1..]);
         }
-        if let Some(open) = header.found.iter().find(|found| !found.has_unit) {
+        if let Some(open) = header.found.iter().find(|found| found.by == By::Unitless) {
             let (place, text) = (open.place + 1, shortened(header.line.trim()));
             let found = format!("column {place} has no unit in the header {text:?}");
             let remedy = format!("give {expected}, or a unit as in --columns 'position=NAME[mm]'");
             return Err(Refusal::state(found, remedy).at(lines[header.at].0));
         }
-        for found in header.found.iter().filter(|found| found.is_synonym) {
+        for found in header.found.iter().filter(|found| found.by == By::Synonym) {
             let name = shortened(header.fields[found.place]);
             notes.push(format!("column {name:?} is read as {}", found.name));
         }

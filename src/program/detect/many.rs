@@ -3,11 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use indicatif::ProgressBar;
-use palpate::detect::Decision;
-use palpate::robust::RobustAnswer;
 use palpate::rows::Rows;
-use palpate::trace::{Record, reasons};
+use palpate::trace::Record;
 use rayon::prelude::*;
 use serde_json::Value;
 
@@ -17,14 +14,16 @@ use crate::output::{Envelope, print};
 use crate::progress::bar;
 use crate::{CliError, error::refuse};
 
-/// The columns of the table of records in CSV, after the file.
-const COLUMNS: [&str; 6] = [
+/// The columns of the table of records in CSV.
+const COLUMNS: [&str; 8] = [
+    "trace",
     "decision",
     "posterior_h1",
     "theta",
     "false_alarm",
     "miss",
     "causes",
+    "error",
 ];
 
 /// The files that the command line names: itself, or those of a folder that end in `.csv`, by their names.
@@ -55,10 +54,9 @@ pub fn traces(named: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
 }
 
 /// What is said of a record.
-struct Judged {
-    decision: Option<Decision>,
-    /// The causes or the likeliest class, for people.
-    why: String,
+struct Answer {
+    /// None if its file was refused.
+    is_judged: Option<bool>,
     /// Samples that were replaced.
     glitches: usize,
     rows: Rows,
@@ -81,108 +79,102 @@ pub fn detect(asked: &Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
                 alike.push((number, record));
             }
             Err(error) => {
-                answers.insert(number, Err(error));
+                answers.insert(number, refused(&path.display().to_string(), &error));
             }
         }
     }
-    let alike: Vec<_> = alike.into_values().collect();
-    let judge = |records: &Vec<(usize, Record)>| judged(asked, records, &bar);
-    let judged: Vec<_> = alike.par_iter().flat_map_iter(judge).collect();
+    let of = |record: &Record| asked.detector(&asked.sweeps(std::slice::from_ref(record)));
+    let judge = |records: Vec<(usize, Record)>| {
+        let first = records.first().map(|(_, record)| of(record));
+        let judge = |(number, record): &(usize, Record)| {
+            bar.inc(1);
+            let answer = match &first {
+                Some(Ok(detector)) => answer(asked, Ok(detector), record),
+                // The refusal names the file: it is another for each.
+                _ => {
+                    let own = of(record);
+                    answer(
+                        asked,
+                        own.as_ref().map_err(|error| error.clone().into()),
+                        record,
+                    )
+                }
+            };
+            (*number, answer)
+        };
+        records.par_iter().map(judge).collect::<Vec<_>>()
+    };
+    let judged: Vec<_> = alike
+        .into_par_iter()
+        .flat_map_iter(|(_, records)| judge(records))
+        .collect();
     answers.extend(judged);
     bar.finish_and_clear();
-    told(asked, traces, answers.into_values().collect())
+    tell(asked.arguments.format, answers.into_values())
 }
 
-/// What is said of records over the same positions, each with its number.
-fn judged(
-    asked: &Asked<'_>,
-    records: &[(usize, Record)],
-    bar: &ProgressBar,
-) -> Vec<(usize, Result<Judged, CliError>)> {
-    let of = |record: &Record| asked.detector(&asked.sweeps(std::slice::from_ref(record)));
-    let first = records.first().map(|(_, record)| of(record));
-    let judge = |(number, record): &(usize, Record)| {
-        bar.inc(1);
-        let judged = match &first {
-            Some(Ok(detector)) => one(asked, detector, record),
-            // The refusal names the file: it is another for each.
-            _ => match of(record) {
-                Ok(detector) => one(asked, &detector, record),
-                Err(refusal) => Err(refusal.into()),
-            },
-        };
-        (*number, judged)
-    };
-    records.par_iter().map(judge).collect()
-}
-
-fn one(asked: &Asked<'_>, detector: &Detector<'_>, record: &Record) -> Result<Judged, CliError> {
+/// What is said of a record by the detector of its positions, or why it is refused.
+fn answer(asked: &Asked<'_>, detector: Result<&Detector<'_>, CliError>, record: &Record) -> Answer {
     let records = std::slice::from_ref(record);
-    let (answer, place) = detector.judge(&asked.sweeps(records))?;
+    let judged = detector.and_then(|of| Ok(of.judge(&asked.sweeps(records))?));
+    let (answer, place) = match judged {
+        Ok(judged) => judged,
+        Err(error) => return refused(record.file(), &error),
+    };
     let mut rows = asked.rows(&[record.file().into()], records);
     rows.append(answer.rows(asked.bank().zip(place.as_ref())));
-    Ok(Judged {
-        decision: answer.decision,
-        why: why(&answer),
+    Answer {
+        is_judged: Some(answer.decision.is_some()),
         glitches: answer.glitches.first().copied().unwrap_or(0),
         rows,
-    })
+    }
 }
 
-/// The causes, or what else the record looks like.
-fn why(answer: &RobustAnswer) -> String {
-    match answer.decision {
-        None => reasons(&answer.causes),
-        Some(decision) => {
-            let hypothesis = usize::from(decision == Decision::Inclusion);
-            let class = answer.likeliest_class(hypothesis);
-            class.map_or(String::new(), |class| {
-                format!("as if {}", answer.classes[class].0.name)
-            })
-        }
+/// What is said of a file that is refused.
+fn refused(file: &str, error: &CliError) -> Answer {
+    let mut rows = Rows::default();
+    rows.value("trace", file);
+    rows.value("error", error.to_string());
+    Answer {
+        is_judged: None,
+        glitches: 0,
+        rows,
     }
 }
 
 /// Prints a line for each record, and errors; fails if one was not judged.
-fn told(
-    asked: &Asked<'_>,
-    traces: &[PathBuf],
-    answers: Vec<Result<Judged, CliError>>,
-) -> Result<(), CliError> {
-    let names: Vec<_> = traces
-        .iter()
-        .map(|path| path.display().to_string())
-        .collect();
-    let width = names
-        .iter()
-        .map(|name| name.chars().count())
-        .max()
-        .unwrap_or(0);
-    let mut text = match asked.arguments.format {
-        AnswerFormat::Table => format!("{:<width$}  {:<16}  posterior\n", "file", "decision"),
-        AnswerFormat::Csv => format!("file,{},error\n", COLUMNS.join(",")),
-        AnswerFormat::Json => String::new(),
-    };
-    let (mut refused, mut unjudged) = (0, 0);
-    for (name, answer) in names.iter().zip(&answers) {
-        match answer {
-            Ok(answer) => {
-                tell_glitches(name, answer.glitches);
-                unjudged += usize::from(answer.decision.is_none());
-            }
-            Err(error) => {
-                refused += 1;
-                eprintln!("palpate: {error}");
-            }
+fn tell(format: AnswerFormat, answers: impl Iterator<Item = Answer>) -> Result<(), CliError> {
+    let answers: Vec<_> = answers.collect();
+    let field = |answer: &Answer, key: &str| text(answer.rows.get(key));
+    for answer in &answers {
+        tell_glitches(&field(answer, "trace"), answer.glitches);
+        if answer.is_judged.is_none() {
+            eprintln!("palpate: {}", field(answer, "error"));
         }
-        text += &match asked.arguments.format {
-            AnswerFormat::Table => line(name, width, answer),
-            AnswerFormat::Csv => csv_line(name, answer),
-            AnswerFormat::Json => json_line(name, answer),
-        };
     }
-    print(&text)?;
-    let all = names.len();
+    let lines: String = match format {
+        AnswerFormat::Table => table(&answers),
+        AnswerFormat::Csv => {
+            let line = |answer| COLUMNS.map(|key| quoted(&field(answer, key))).join(",") + "\n";
+            let header = COLUMNS.join(",") + "\n";
+            header + &answers.iter().map(line).collect::<String>()
+        }
+        AnswerFormat::Json => {
+            let line = |answer: &Answer| {
+                let answer = Envelope::new("palpate-detection", 4, &answer.rows);
+                serde_json::to_string(&answer).unwrap_or_default() + "\n"
+            };
+            answers.iter().map(line).collect()
+        }
+    };
+    print(&lines)?;
+    let count = |of| {
+        answers
+            .iter()
+            .filter(|answer| answer.is_judged == of)
+            .count()
+    };
+    let (refused, unjudged, all) = (count(None), count(Some(false)), answers.len());
     match (refused, unjudged) {
         (0, 0) => Ok(()),
         (0, _) => {
@@ -194,49 +186,42 @@ fn told(
     }
 }
 
-/// A line for people.
-fn line(name: &str, width: usize, answer: &Result<Judged, CliError>) -> String {
-    let (decision, posterior, why) = match answer {
-        Ok(answer) => {
-            let decision = text(answer.rows.get("decision")).replace('_', " ");
-            let posterior = answer.rows.get("posterior_h1").and_then(Value::as_f64);
-            let posterior = posterior.map_or("-".into(), |posterior| format!("{posterior:.6}"));
-            (decision, posterior, &*answer.why)
-        }
-        Err(_) => ("refused".into(), "-".into(), "see the message"),
+/// The table for people: file, decision, posterior, and the causes or the likeliest class.
+fn table(answers: &[Answer]) -> String {
+    let line = |answer: &Answer| {
+        let field = |key: &str| answer.rows.get(key);
+        let decision = answer
+            .is_judged
+            .map_or("refused".into(), |_| text(field("decision")));
+        let class = match &*decision {
+            "inclusion" => field("class_with"),
+            _ => field("class_without"),
+        };
+        let class = class.map(|class| format!("as if {}", text(class.get("class"))));
+        let why = match answer.is_judged {
+            Some(false) => text(field("causes")),
+            _ => class.unwrap_or_default(),
+        };
+        let posterior = field("posterior_h1").and_then(Value::as_f64);
+        let posterior = posterior.map_or("-".into(), |posterior| format!("{posterior:.6}"));
+        [
+            text(field("trace")),
+            decision.replace('_', " "),
+            posterior,
+            why,
+        ]
     };
-    format!("{name:<width$}  {decision:<16}  {posterior:<9}  {why}\n")
-}
-
-fn csv_line(name: &str, answer: &Result<Judged, CliError>) -> String {
-    let mut fields = vec![quoted(name)];
-    match answer {
-        Ok(answer) => {
-            fields.extend(COLUMNS.map(|key| quoted(&text(answer.rows.get(key)))));
-            fields.push(String::new());
-        }
-        Err(error) => {
-            fields.extend(COLUMNS.map(|_| String::new()));
-            fields.push(quoted(&error.to_string()));
-        }
-    }
-    fields.join(",") + "\n"
-}
-
-fn json_line(name: &str, answer: &Result<Judged, CliError>) -> String {
-    let refused;
-    let rows = match answer {
-        Ok(answer) => &answer.rows,
-        Err(error) => {
-            let mut rows = Rows::default();
-            rows.value("trace", name);
-            rows.value("error", error.to_string());
-            refused = rows;
-            &refused
-        }
+    let head = ["file", "decision", "posterior", ""].map(String::from);
+    let lines: Vec<_> = std::iter::once(head)
+        .chain(answers.iter().map(line))
+        .collect();
+    let width = |line: &[String; 4]| line[0].chars().count();
+    let width = lines.iter().map(width).max().unwrap_or(0);
+    let line = |[file, decision, posterior, why]: &[String; 4]| {
+        let line = format!("{file:<width$}  {decision:<16}  {posterior:<9}  {why}");
+        line.trim_end().to_owned() + "\n"
     };
-    let line = serde_json::to_string(&Envelope::new("palpate-detection", 4, rows));
-    line.unwrap_or_default() + "\n"
+    lines.iter().map(line).collect()
 }
 
 /// A value in a field: a list with semicolons, nothing for none.
