@@ -76,7 +76,7 @@ impl<const N: usize> Rows<N> {
         if let Some(open) = header.found.iter().find(|found| found.by == By::Unitless) {
             let (place, text) = (open.place + 1, shortened(header.line.trim()));
             let found = format!("column {place} has no unit in the header {text:?}");
-            let remedy = format!("give {expected}, or a unit as in --columns 'position=NAME[mm]'");
+            let remedy = format!("give {expected}");
             return Err(Refusal::state(found, remedy).at(lines[header.at].0));
         }
         for found in header.found.iter().filter(|found| found.by == By::Synonym) {

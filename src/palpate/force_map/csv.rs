@@ -15,7 +15,7 @@ const COLUMNS: [Column; 4] = [
     &[&[("lateral_force_n", 0), ("lateral_force_mn", -3)]],
 ];
 /// The headers that are right, for a person.
-const EXPECTED_HEADER: &str = "depth_mm,lateral_mm,normal_force_n,lateral_force_n, in any order, lengths also as _m, forces also as _mn";
+const EXPECTED_HEADER: &str = "depth_mm,lateral_mm,normal_force_n,lateral_force_n, in any order, lengths also as _m, forces also as _mn, or say with --columns what each holds";
 
 impl ForceMap {
     /// The measured map in `text`, the content of `file`. The map records the file's name without

@@ -77,7 +77,7 @@ const COLUMNS: [Column; 3] = [
     &[&[("normal_force_n", 0), ("normal_force_mn", -3)]],
 ];
 /// The headers that are right, for a person.
-const EXPECTED_HEADER: &str = "position_mm,lateral_force_n,normal_force_n, in any order, or time_s for the position, also position_m, time_ms and forces as _mn";
+const EXPECTED_HEADER: &str = "position_mm,lateral_force_n,normal_force_n, in any order, or time_s for the position, also position_m, time_ms and forces as _mn, or say with --columns what each holds";
 
 /// The share of the range of its positions by which a sample may lie behind one before it: the jitter of an encoder.
 ///
