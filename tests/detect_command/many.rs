@@ -15,6 +15,8 @@ fn folder() -> [&'static str; 2] {
     place().write("many/a,without.CSV", without);
     place().write("many/c broken.csv", "position_mm,normal_force_n\n0,1\n");
     place().write("many/notes.txt", "none");
+    let machine = place().read("with.csv").replace("lateral_force_n", "Fx");
+    place().write("machine.csv", machine);
     ["many/a,without.CSV", "many/b with.csv"]
 }
 
@@ -106,6 +108,18 @@ fn each_record_of_a_folder_is_judged_alone() {
         "{}",
         table[3]
     );
+}
+
+// Verifies: CLI-175, MAP-045.
+#[test]
+fn what_is_to_be_said_of_several_files_is_said_once() {
+    folder();
+    let output = place().run(&format!(
+        "detect machine.csv with.csv machine.csv {MAPS} {KNOWN}"
+    ));
+    let expected =
+        "palpate: note: machine.csv (and 1 more): column \"Fx\" is read as lateral_force_n\n";
+    assert_eq!(text(&output.stderr), expected);
 }
 
 // Verifies: CLI-175.

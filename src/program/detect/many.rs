@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::arguments::AnswerFormat;
 use super::robust::{Asked, Detector, tell_glitches};
-use crate::output::{Envelope, print};
+use crate::output::{Envelope, note, print};
 use crate::progress::bar;
 use crate::{CliError, error::refuse};
 
@@ -70,10 +70,15 @@ pub fn detect(asked: &Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
     let mut answers = BTreeMap::new();
     // One detector for all records over the same positions.
     let mut alike: BTreeMap<Vec<u64>, Vec<(usize, Record)>> = BTreeMap::new();
-    // One after the other, so that the notes have an order.
+    // What is said of several files is said once.
+    let mut notes: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for (number, path) in traces.iter().enumerate() {
         match asked.read(path) {
-            Ok(record) => {
+            Ok((record, told)) => {
+                for text in told {
+                    let files: &mut Vec<_> = notes.entry(text).or_default();
+                    files.push(record.file().to_owned());
+                }
                 let positions = record.positions().iter().map(|x| x.to_bits());
                 let alike = alike.entry(positions.collect()).or_default();
                 alike.push((number, record));
@@ -82,6 +87,13 @@ pub fn detect(asked: &Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
                 answers.insert(number, refused(&path.display().to_string(), &error));
             }
         }
+    }
+    for (text, files) in notes {
+        let more = match files.len() - 1 {
+            0 => String::new(),
+            more => format!(" (and {more} more)"),
+        };
+        note(format!("{}{more}", files[0]), &text);
     }
     let of = |record: &Record| asked.detector(&asked.sweeps(std::slice::from_ref(record)));
     let judge = |records: Vec<(usize, Record)>| {

@@ -46,7 +46,7 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
 /// The record in a file, or of standard input for `-`.
 ///
 /// Implements: CLI-175.
-fn read(arguments: &DetectArguments, layout: &Layout, path: &Path) -> Result<Record, CliError> {
+fn read(arguments: &DetectArguments, layout: &Layout, path: &Path) -> Result<Noted, CliError> {
     let trace = if path == Path::new("-") {
         let text = palpate::file::text(Path::new("/dev/stdin"));
         let text = text.map_err(CliError::file("read", Path::new("standard input")))?;
@@ -54,19 +54,27 @@ fn read(arguments: &DetectArguments, layout: &Layout, path: &Path) -> Result<Rec
     } else {
         Trace::read(path, layout)?
     };
-    for text in trace.notes() {
-        note(path.display(), text);
-    }
+    let notes = trace.notes().to_vec();
     let motion = arguments.sweep.velocity.zip(arguments.sweep.start);
-    Ok(trace.record(motion.map(|(velocity, start)| Motion { velocity, start }))?)
+    let record = trace.record(motion.map(|(velocity, start)| Motion { velocity, start }))?;
+    Ok((record, notes))
+}
+
+/// A record, and what a person should know of how it was read.
+type Noted = (Record, Vec<String>);
+
+/// The record, whose notes are printed.
+fn told((record, notes): Noted) -> Record {
+    notes.iter().for_each(|text| note(record.file(), text));
+    record
 }
 
 /// Judges the record at the position for which the maps are.
-fn by_maps(arguments: &DetectArguments, record: Record) -> Result<(), CliError> {
+fn by_maps(arguments: &DetectArguments, record: Noted) -> Result<(), CliError> {
     let maps = TwoMaps::read(arguments)?;
     let (table, file) = (maps.reference.table(), maps.reference_file);
     let depth = depth(arguments)?.unwrap_or(0.0);
-    let record = trimmed(arguments, record, table)?;
+    let record = told(trimmed(arguments, record, table)?);
     let mut warnings = Warnings::default();
     let known = arguments.noise.known()?;
     let question = question(arguments, &known, depth, table, file, &mut warnings)?;
@@ -81,11 +89,11 @@ fn by_maps(arguments: &DetectArguments, record: Record) -> Result<(), CliError> 
 /// Searches the record for any inclusion of a bank.
 ///
 /// Implements: CLI-140, CLI-040, CLI-163.
-fn by_bank(arguments: &DetectArguments, record: Record, path: &Path) -> Result<(), CliError> {
+fn by_bank(arguments: &DetectArguments, record: Noted, path: &Path) -> Result<(), CliError> {
     let bank = Bank::read(path)?;
     let (files, table) = (&arguments.hypotheses, bank.reference().table());
     let depth = depth(arguments)?.unwrap_or(bank.depth());
-    let record = trimmed(arguments, record, table)?;
+    let record = told(trimmed(arguments, record, table)?);
     let prior = files.prior.as_ref();
     let prior = prior.map(|file| bank.read_prior(file)).transpose()?;
     let mut warnings = Warnings::default();
@@ -110,15 +118,15 @@ fn by_bank(arguments: &DetectArguments, record: Record, path: &Path) -> Result<(
 /// The record without the samples outside `map`, if --trim is given.
 fn trimmed(
     arguments: &DetectArguments,
-    record: Record,
+    (record, mut notes): Noted,
     map: &ForceTable,
-) -> Result<Record, CliError> {
+) -> Result<Noted, CliError> {
     if !arguments.sweep.trim {
-        return Ok(record);
+        return Ok((record, notes));
     }
     let (record, left_out) = record.trimmed(map)?;
-    left_out.iter().for_each(|text| note(record.file(), text));
-    Ok(record)
+    notes.extend(left_out);
+    Ok((record, notes))
 }
 
 /// The question to ask of a sweep at `depth` over the gel of `reference`, the map in `file`.

@@ -5,7 +5,7 @@ use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 
 use super::arguments::{AnswerFormat, ModelName};
-use super::{DetectArguments, TwoMaps, Warnings, asked, many, tell, trimmed};
+use super::{DetectArguments, Noted, TwoMaps, Warnings, asked, many, tell, told, trimmed};
 use crate::CliError;
 use crate::error::refuse;
 use crate::output::{note, write};
@@ -116,7 +116,7 @@ pub fn detect(arguments: &DetectArguments, layout: &Layout) -> Result<(), CliErr
 /// Judges sweeps of one place.
 fn one(asked: &Asked<'_>, traces: &[PathBuf], warnings: Warnings) -> Result<(), CliError> {
     let arguments = asked.arguments;
-    let records = traces.iter().map(|path| asked.read(path));
+    let records = traces.iter().map(|path| asked.read(path).map(told));
     let records = records.collect::<Result<Vec<_>, _>>()?;
     let sweeps = asked.sweeps(&records);
     let (answer, place) = asked.detector(&sweeps)?.judge(&sweeps)?;
@@ -207,7 +207,7 @@ impl<'a> Asked<'a> {
             changes: BTreeMap::new(),
         };
         let files = arguments.model.reference_sweeps.iter();
-        let references = files.map(|path| asked.read(path));
+        let references = files.map(|path| asked.read(path).map(told));
         asked.references = references.collect::<Result<_, _>>()?;
         let file = arguments.model.gel_uncertainty.as_ref();
         let uncertainty = file.map(|file| GelUncertainty::read(file)).transpose()?;
@@ -243,7 +243,7 @@ impl<'a> Asked<'a> {
     }
 
     /// Reads a record, without what is outside the maps if --trim is given.
-    pub fn read(&self, path: &Path) -> Result<Record, CliError> {
+    pub(super) fn read(&self, path: &Path) -> Result<Noted, CliError> {
         let record = super::read(self.arguments, self.layout, path)?;
         trimmed(self.arguments, record, self.reference().table())
     }
