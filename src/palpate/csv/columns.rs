@@ -105,8 +105,15 @@ impl FromStr for Layout {
     /// Implements: MAP-046.
     fn from_str(text: &str) -> Result<Layout, Refusal> {
         let columns = split(text, ',').map(Stated::parse);
+        let columns: Vec<Stated> = columns.collect::<Result<_, _>>()?;
+        for (at, stated) in columns.iter().enumerate() {
+            let quantity = &stated.quantity;
+            let is_twice = columns[..at].iter().any(|of| of.quantity == *quantity);
+            let found = format!("{quantity} is twice in the columns");
+            Refusal::state(found, "give it once").when(is_twice)?;
+        }
         Ok(Layout {
-            columns: columns.collect::<Result<_, _>>()?,
+            columns,
             skipped: 0,
         })
     }
@@ -159,8 +166,8 @@ impl Stated {
         });
         let (name, factor) = factor.unwrap_or((name, 1.0));
         let name = unquoted(name);
-        let known = ["position", "time", "depth", "normal", "lateral"];
-        if name.is_empty() || !known.contains(&quantity) {
+        let is_known = SYNONYMS.iter().any(|(of, _)| key(of) == quantity);
+        if name.is_empty() || !is_known {
             return Err(wrong());
         }
         Ok(Stated {
@@ -405,6 +412,14 @@ mod tests {
             (
                 "depth=t[mm]",
                 "the columns have depth, which such a table does not have; give position, time, normal",
+            ),
+            (
+                "normal=3[N],normal=4",
+                "normal is twice in the columns; give it once",
+            ),
+            (
+                "position=4[mm]",
+                "line 1: column 4 for two quantities in the header",
             ),
             ("normal=Last", "line 1: no column \"Last\" in the header"),
             ("normal=5[N]", "line 1: no column \"5\" in the header"),

@@ -55,37 +55,15 @@ impl<const N: usize> Rows<N> {
         if lines.is_empty() {
             lines.push((first, ""));
         }
-        let mut header =
-            Header::find(&lines, columns, layout).map_err(|(found, (line, header))| {
-                let header = shortened(header.trim());
-                let found = format!("{found} in the header {header:?}");
-                Refusal::state(found, format!("give {expected}")).at(line)
-            })?;
-        let mut notes = Vec::new();
-        if header.at > 0 {
-            let first = lines[header.at].0;
-            notes.push(format!(
-                "the header is line {first}: what is before it is not used"
-            ));
-        }
-        let mut rows = &lines[header.at + 1..];
-        if let Some((line, found)) = rows.first().and_then(|row| header.units(*row, columns)) {
-            notes.push(format!("line {line} gives the units"));
-            (header.found, rows) = (found, &rows[1..]);
-        }
-        if let Some(open) = header.found.iter().find(|found| found.by == By::Unitless) {
-            let (place, text) = (open.place + 1, shortened(header.line.trim()));
-            let found = format!("column {place} has no unit in the header {text:?}");
-            let remedy = format!("give {expected}");
-            return Err(Refusal::state(found, remedy).at(lines[header.at].0));
-        }
-        for found in header.found.iter().filter(|found| found.by == By::Synonym) {
-            let name = shortened(header.fields[found.place]);
-            notes.push(format!("column {name:?} is read as {}", found.name));
-        }
+        let header = Header::find(&lines, columns, layout);
+        let header = header.map_err(|(found, (line, header))| {
+            let found = format!("{found} in the header {:?}", shortened(header.trim()));
+            Refusal::state(found, format!("give {expected}")).at(line)
+        })?;
+        let mut notes = header.notes(&lines);
+        let rows = &lines[header.below..];
         let footer = header.footer(rows);
         if footer > 0 {
-            rows = &rows[..rows.len() - footer];
             notes.push(format!("lines after the last row are not used: {footer}"));
         }
         // Where commas separate the fields, none is a decimal comma.
@@ -94,11 +72,9 @@ impl<const N: usize> Rows<N> {
             Ok(numbers) => Ok((line, numbers)),
             Err(refusal) => Err(Refusal::at(refusal, line)),
         };
-        let rows = rows.iter().map(row).collect::<Result<_, _>>()?;
-        notes.extend(unused(
-            &header.fields,
-            &header.found.map(|found| found.place),
-        ));
+        let rows = rows[..rows.len() - footer].iter().map(row);
+        let rows = rows.collect::<Result<_, _>>()?;
+        notes.extend(header.unused());
         if mark == Some(',') {
             notes.push("commas in its numbers are decimal commas".into());
         }
@@ -115,6 +91,8 @@ impl<const N: usize> Rows<N> {
 struct Header<'a, const N: usize> {
     /// Its place among the lines.
     at: usize,
+    /// The place of the line below it and its units.
+    below: usize,
     line: &'a str,
     separator: char,
     fields: Vec<&'a str>,
@@ -125,7 +103,7 @@ impl<'a, const N: usize> Header<'a, N> {
     /// The first line that names the columns and has numbers below it, else the first that names them.
     ///
     /// # Errors
-    /// What is wrong with the first line, if there is none.
+    /// What is wrong with that line, or with the first where none names them.
     ///
     /// Implements: MAP-047.
     fn find(
@@ -135,29 +113,36 @@ impl<'a, const N: usize> Header<'a, N> {
     ) -> Result<Header<'a, N>, (String, (usize, &'a str))> {
         let mut named = None;
         for at in 0..lines.len().min(MOST_LINES_BEFORE) {
-            if let Ok(header) = Header::of(lines[at].1, at, columns, layout) {
-                let below: Vec<_> = lines.iter().skip(at + 1).take(2).copied().collect();
-                let units = below.first().and_then(|row| header.units(*row, columns));
-                let row = below.get(usize::from(units.is_some()));
+            if let Ok(header) = Header::of(lines, at, columns, layout) {
+                let row = lines.get(header.below);
                 if row.is_some_and(|(_, row)| header.numbers(row, &mut None).is_ok()) {
-                    return Ok(header);
+                    named = Some(header);
+                    break;
                 }
                 named.get_or_insert(header);
             }
         }
-        let first = || Header::of(lines[0].1, 0, columns, layout);
-        named.map_or_else(|| first().map_err(|found| (found, lines[0])), Ok)
+        let first = || Header::of(lines, 0, columns, layout);
+        let header = named.map_or_else(|| first().map_err(|found| (found, lines[0])), Ok)?;
+        match header.found.iter().find(|found| found.by == By::Unitless) {
+            None => Ok(header),
+            Some(open) => {
+                let found = format!("column {} has no unit", open.place + 1);
+                Err((found, lines[header.at]))
+            }
+        }
     }
 
     /// The columns in one line.
     ///
     /// Implements: MAP-040.
     fn of(
-        line: &'a str,
+        lines: &[(usize, &'a str)],
         at: usize,
         columns: [Column; N],
         layout: &Layout,
     ) -> Result<Header<'a, N>, String> {
+        let line = lines[at].1;
         // Of equally many fields the last makes it: the comma.
         let separators = ['\t', ';', ','].into_iter();
         let separator = separators.max_by_key(|&separator| split(line, separator).count());
@@ -165,29 +150,63 @@ impl<'a, const N: usize> Header<'a, N> {
         let fields: Vec<&str> = split(line, separator).collect();
         let found = columns.map(|column| find(&fields, column, layout));
         let found: Vec<Found> = found.into_iter().collect::<Result<_, _>>()?;
+        let twice = (1..N).find(|&at| found[..at].iter().any(|of| of.place == found[at].place));
+        if let Some(twice) = twice {
+            let place = found[twice].place + 1;
+            return Err(format!("column {place} for two quantities"));
+        }
         // There are as many as columns.
         let found = std::array::from_fn(|at| found[at]);
+        let units = lines.get(at + 1).and_then(|(_, row)| {
+            let units: Vec<&str> = split(row, separator).collect();
+            in_units(found, columns, &units)
+        });
         Ok(Header {
             at,
+            below: at + 1 + usize::from(units.is_some()),
             line,
             separator,
             fields,
-            found,
+            found: units.unwrap_or(found),
         })
     }
 
-    /// The columns in the units that a row gives, and its line, if it is one of units.
-    fn units(
-        &self,
-        (line, row): (usize, &str),
-        columns: [Column; N],
-    ) -> Option<(usize, [Found; N])> {
-        let fields: Vec<&str> = split(row, self.separator).collect();
-        let mut found = self.found;
-        for (found, column) in found.iter_mut().zip(columns) {
-            *found = found.in_unit(column, fields.get(found.place)?)?;
+    /// What a person should know of how the columns were found.
+    fn notes(&self, lines: &[(usize, &str)]) -> Vec<String> {
+        let mut notes = Vec::new();
+        if self.at > 0 {
+            let line = lines[self.at].0;
+            notes.push(format!(
+                "the header is line {line}: what is before it is not used"
+            ));
         }
-        Some((line, found))
+        if self.below > self.at + 1 {
+            let line = lines[self.at + 1].0;
+            notes.push(format!("line {line} gives the units"));
+        }
+        for found in self.found.iter().filter(|found| found.by == By::Synonym) {
+            let name = shortened(self.fields[found.place]);
+            notes.push(format!("column {name:?} is read as {}", found.name));
+        }
+        notes
+    }
+
+    /// What there is to say of the columns that are not used, if any.
+    ///
+    /// Implements: MAP-044.
+    fn unused(&self) -> Option<String> {
+        let is_used = |place| self.found.iter().any(|found| found.place == place);
+        // A first column without a name numbers the rows.
+        let others = (0..).zip(&self.fields).filter(|&(place, name)| {
+            let is_index = (place, *name) == (0, "");
+            !is_index && !is_used(place)
+        });
+        let names = others.map(|(_, name)| format!("{:?}", shortened(name)));
+        match &names.collect::<Vec<_>>()[..] {
+            [] => None,
+            [name] => Some(format!("column {name} is not used")),
+            names => Some(format!("columns {} are not used", names.join(", "))),
+        }
     }
 
     /// How many lines behind the last row of this table are none: they have another number of fields and begin with no number.
@@ -229,21 +248,16 @@ impl<'a, const N: usize> Header<'a, N> {
     }
 }
 
-/// What there is to say of the columns of a header that are not `used`, if any.
-///
-/// Implements: MAP-044.
-fn unused(header: &[&str], used: &[usize]) -> Option<String> {
-    // A first column without a name numbers the rows.
-    let others = (0..).zip(header).filter(|&(place, name)| {
-        let is_index = (place, *name) == (0, "");
-        !is_index && !used.contains(&place)
-    });
-    let names = others.map(|(_, name)| format!("{:?}", shortened(name)));
-    match &names.collect::<Vec<_>>()[..] {
-        [] => None,
-        [name] => Some(format!("column {name} is not used")),
-        names => Some(format!("columns {} are not used", names.join(", "))),
+/// The columns in the units of a row, if it is one of units.
+fn in_units<const N: usize>(
+    mut found: [Found; N],
+    columns: [Column; N],
+    units: &[&str],
+) -> Option<[Found; N]> {
+    for (found, column) in found.iter_mut().zip(columns) {
+        *found = found.in_unit(column, units.get(found.place)?)?;
     }
+    Some(found)
 }
 
 /// The fields of a line, without the spaces and then the quotes around them. A separator between quotes is none.
@@ -301,7 +315,7 @@ pub fn fields<'a>(row: &'a str, expected: usize, header: &str) -> Result<Vec<&'a
 }
 
 /// The fields of a row, which must be `expected` as in the header.
-fn counted<'a>(
+pub fn counted<'a>(
     fields: Vec<&'a str>,
     expected: usize,
     header: &str,
