@@ -107,8 +107,8 @@ impl AnswerTable {
         let ((header_line, header), rows) = header_and_rows(text);
         let (inclusions, subjects) = match trials::places(header) {
             Some(places) => {
-                let counted = trials::counted(places, rows);
-                counted.map_err(|refusal| refusal.in_file(file))?
+                let counts = trials::counts(header, places, rows);
+                counts.map_err(|refusal| refusal.in_file(file))?
             }
             None => {
                 let inclusions = inclusions(header).map_err(at(header_line))?;

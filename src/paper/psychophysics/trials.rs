@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::table::{Column, MOST_TRIALS, Subject, column, plain, refused};
-use palpate::csv::split;
+use palpate::csv::{counted, split};
 use palpate::refusal::Refusal;
 
 /// The names of the columns: who answered, what was felt, the inclusion of the pair, whether the answer was right.
@@ -57,17 +57,19 @@ type Counts = HashMap<String, (u32, u32)>;
 /// The first row that is wrong, or a subject who did not answer to each inclusion equally often; with the line.
 ///
 /// Implements: PSY-021.
-pub(super) fn counted<'a>(
+pub(super) fn counts<'a>(
+    header: &str,
     places: [usize; 4],
     rows: impl Iterator<Item = (usize, &'a str)>,
 ) -> Result<(Vec<Column>, Vec<OfSubject>), Refusal> {
+    let width = split(header, ',').count();
     let mut inclusions: Vec<Column> = Vec::new();
     let mut found: Vec<(usize, [String; 2], Counts)> = Vec::new();
     let mut known: HashMap<[String; 2], usize> = HashMap::new();
     for (line, row) in rows {
-        let fields: Vec<&str> = split(row, ',').collect();
-        let [subject, condition, inclusion, answer] =
-            places.map(|place| fields.get(place).copied().unwrap_or(""));
+        let fields = counted(split(row, ',').collect(), width, header);
+        let fields = fields.map_err(|refusal| refusal.at(line))?;
+        let [subject, condition, inclusion, answer] = places.map(|place| fields[place]);
         if answer.is_empty() {
             continue;
         }

@@ -102,6 +102,7 @@ fn a_row_for_each_trial_is_counted() {
     assert_eq!(found, AnswerTable::from_csv(counts, "counts.csv").unwrap());
     let head = "subject,condition,inclusion,correct\n";
     for (rows, expected) in [
+        ("1,a,2.6,1\n1,a,2.6\n", "t.csv:3: 3 fields; give 4"),
         (
             "1,a,2.6,2\n",
             "t.csv:2: correct = \"2\", but must be 1 or 0, or true or false",
