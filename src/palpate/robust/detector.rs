@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::classes::{CLASSES, Class, Covariance, Disturbances, Part, SUPPORT_ALONE, SharedBy};
 use super::evidence::{Evidence, Signal, WeightedClass, evidence};
@@ -172,7 +172,7 @@ impl<'a> RobustDetector<'a> {
         let shares =
             pairs.map(|(without, with)| [libm::exp(without - none), libm::exp(with - any)]);
         answer.classes = self.classes.iter().copied().zip(shares).collect();
-        answer.rates = self.rates(noise, answer)?;
+        answer.rates = self.rates(&found.factors, answer)?;
         let degrees = noise.len() as f64 - 2.0 * self.sweeps.len() as f64;
         let tail = chi_square(found.distance, degrees, 0.0);
         if tail.map_err(refused)?.upper < MISFIT_RATE {
@@ -202,19 +202,15 @@ impl<'a> RobustDetector<'a> {
             each.concat()
         };
         let noise: Vec<f64> = self.sweeps.iter().flat_map(variance).collect();
-        let gammas = self.beside(&self.signals[signal].mean, &DVector::from_vec(noise));
-        self.classes.iter().copied().zip(gammas).collect()
-    }
-
-    /// γ of a signal beside each class, in noise of these variances of the modes, N².
-    fn beside(&self, signal: &DVector<f64>, noise: &DVector<f64>) -> Vec<f64> {
-        let gamma = |class: &WeightedClass| {
-            let whole = &class.covariance + DMatrix::from_diagonal(noise);
+        let noise = DMatrix::from_diagonal(&DVector::from_vec(noise));
+        let signal = &self.signals[signal].mean;
+        let gamma = |of: &WeightedClass| {
             // A class without a density has no record either.
-            let solved = whole.cholesky().map(|of| of.solve(signal));
-            solved.map_or(0.0, |solved| libm::sqrt(solved.dot(signal)))
+            let factor = (&of.covariance + &noise).cholesky();
+            factor.map_or(0.0, |factor| gamma(&factor, signal))
         };
-        self.weighted.iter().map(gamma).collect()
+        let gammas = self.weighted.iter().map(gamma);
+        self.classes.iter().copied().zip(gammas).collect()
     }
 
     /// The signal with the largest posterior of the `answer`.
@@ -230,7 +226,7 @@ impl<'a> RobustDetector<'a> {
     /// Implements: ROB-046.
     fn rates(
         &self,
-        noise: &DVector<f64>,
+        factors: &[Cholesky<f64, Dyn>],
         answer: &RobustAnswer,
     ) -> Result<Option<ErrorRates>, Refusal> {
         let Some(signal) = self.likeliest_signal(answer) else {
@@ -242,8 +238,8 @@ impl<'a> RobustDetector<'a> {
             false_alarm: 0.0,
             miss: 0.0,
         };
-        let gammas = self.beside(&signal.mean, noise);
-        for ((_, [without, with]), gamma) in answer.classes.iter().zip(gammas) {
+        for ((_, [without, with]), factor) in answer.classes.iter().zip(factors) {
+            let gamma = gamma(factor, &signal.mean);
             let at = |eta: f64| error_rates(gamma, eta).map_err(refused);
             if *without > ALLOWED {
                 largest.false_alarm = largest.false_alarm.max(at(prior + odds)?.false_alarm);
@@ -254,6 +250,11 @@ impl<'a> RobustDetector<'a> {
         }
         Ok(Some(largest))
     }
+}
+
+/// γ of a signal in noise of a factorised covariance.
+fn gamma(factor: &Cholesky<f64, Dyn>, signal: &DVector<f64>) -> f64 {
+    libm::sqrt(factor.solve(signal).dot(signal))
 }
 
 /// Whether the maps are exchanged: the forces with the inclusion are smaller, and no phantom says that the reference has none.

@@ -34,6 +34,8 @@ pub struct WeightedClass {
 /// What a record says of each class under either hypothesis.
 #[derive(Debug, Clone)]
 pub struct Evidence {
+    /// The covariance of each class beside the noise, factorised.
+    pub factors: Vec<Cholesky<f64, Dyn>>,
     /// ln of the weight of each class times the density of the record without inclusion.
     pub without: Vec<f64>,
     /// ln of the density of the record with each signal, averaged over the classes.
@@ -100,7 +102,7 @@ pub fn evidence(
 ) -> Option<Evidence> {
     let whole: f64 = classes.iter().map(|class| class.weight).sum();
     let (sizes, nearest) = sizes(signals);
-    let (mut without, mut by_class) = (Vec::new(), Vec::new());
+    let (mut alone, mut without, mut by_class) = (Vec::new(), Vec::new(), Vec::new());
     let mut with = vec![f64::NEG_INFINITY; signals.len()];
     let mut best = (f64::NEG_INFINITY, f64::INFINITY);
     for class in classes {
@@ -132,8 +134,10 @@ pub fn evidence(
             any = log_sum(any, density + signal.log_prior);
         }
         by_class.push(any);
+        alone.push(none.cholesky);
     }
     Some(Evidence {
+        factors: alone,
         without,
         with,
         by_class,
