@@ -48,6 +48,7 @@ fn each_record_of_a_folder_is_judged_alone() {
             "samples",
             "known",
             "noise_sd_normal_n",
+            "warnings",
         ] {
             assert_eq!(line[key], alone[key], "{key}");
         }
@@ -56,6 +57,11 @@ fn each_record_of_a_folder_is_judged_alone() {
     assert_has(
         lines[2]["error"].as_str().unwrap(),
         "no column lateral_force_n",
+    );
+    let figure = place().refused(&format!("{command} --figure many.svg"));
+    assert_eq!(
+        figure,
+        "--figure draws one place; give one trace, or --together"
     );
     // The same in CSV and for people.
     let csv = place().run(&format!("{command} --format csv"));

@@ -1,8 +1,10 @@
 //! `palpate detect` for many records, each of a place of its own.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::path::PathBuf;
 
+use palpate::refusal::Refusal;
 use palpate::rows::Rows;
 use palpate::trace::Record;
 use rayon::prelude::*;
@@ -97,53 +99,40 @@ pub fn detect(asked: &Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
     }
     let of = |record: &Record| asked.detector(&asked.sweeps(std::slice::from_ref(record)));
     let judge = |records: Vec<(usize, Record)>| {
-        let first = records.first().map(|(_, record)| of(record));
+        let first = of(&records[0].1);
         let judge = |(number, record): &(usize, Record)| {
             bar.inc(1);
             let answer = match &first {
-                Some(Ok(detector)) => answer(asked, Ok(detector), record),
+                Ok(detector) => answer(asked, detector, record),
                 // The refusal names the file: it is another for each.
-                _ => {
-                    let own = of(record);
-                    answer(
-                        asked,
-                        own.as_ref().map_err(|error| error.clone().into()),
-                        record,
-                    )
-                }
+                Err(_) => of(record).and_then(|own| answer(asked, &own, record)),
             };
+            let answer = answer.unwrap_or_else(|refusal| refused(record.file(), &refusal));
             (*number, answer)
         };
         records.par_iter().map(judge).collect::<Vec<_>>()
     };
-    let judged: Vec<_> = alike
-        .into_par_iter()
-        .flat_map_iter(|(_, records)| judge(records))
-        .collect();
+    let alike = alike.into_values().collect::<Vec<_>>().into_par_iter();
+    let judged: Vec<_> = alike.flat_map_iter(judge).collect();
     answers.extend(judged);
     bar.finish_and_clear();
-    tell(asked.arguments.format, answers.into_values())
+    tell(asked.arguments.format, answers.into_values().collect())
 }
 
-/// What is said of a record by the detector of its positions, or why it is refused.
-fn answer(asked: &Asked<'_>, detector: Result<&Detector<'_>, CliError>, record: &Record) -> Answer {
+/// What is said of a record by the detector of its positions.
+fn answer(asked: &Asked<'_>, detector: &Detector<'_>, record: &Record) -> Result<Answer, Refusal> {
     let records = std::slice::from_ref(record);
-    let judged = detector.and_then(|of| Ok(of.judge(&asked.sweeps(records))?));
-    let (answer, place) = match judged {
-        Ok(judged) => judged,
-        Err(error) => return refused(record.file(), &error),
-    };
-    let mut rows = asked.rows(&[record.file().into()], records);
-    rows.append(answer.rows(asked.bank().zip(place.as_ref())));
-    Answer {
+    let (answer, place) = detector.judge(&asked.sweeps(records))?;
+    let rows = answer.rows(asked.bank().zip(place.as_ref()));
+    Ok(Answer {
         is_judged: Some(answer.decision.is_some()),
         glitches: answer.glitches.first().copied().unwrap_or(0),
-        rows,
-    }
+        rows: asked.rows(&[record.file().into()], records, rows),
+    })
 }
 
 /// What is said of a file that is refused.
-fn refused(file: &str, error: &CliError) -> Answer {
+fn refused(file: &str, error: &impl Display) -> Answer {
     let mut rows = Rows::default();
     rows.value("trace", file);
     rows.value("error", error.to_string());
@@ -155,8 +144,7 @@ fn refused(file: &str, error: &CliError) -> Answer {
 }
 
 /// Prints a line for each record, and errors; fails if one was not judged.
-fn tell(format: AnswerFormat, answers: impl Iterator<Item = Answer>) -> Result<(), CliError> {
-    let answers: Vec<_> = answers.collect();
+fn tell(format: AnswerFormat, answers: Vec<Answer>) -> Result<(), CliError> {
     let field = |answer: &Answer, key: &str| text(answer.rows.get(key));
     for answer in &answers {
         tell_glitches(&field(answer, "trace"), answer.glitches);

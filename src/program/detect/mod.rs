@@ -21,7 +21,9 @@ use palpate::detect::Decision;
 use palpate::force_map::{ForceMap, ForceTable, Hypotheses};
 use palpate::refusal::one_line;
 use palpate::rows::Rows;
-use palpate::trace::{Cause, Fit, Motion, Question, Record, Trace, Unknown, in_words, reasons};
+use palpate::trace::{
+    Cause, Fit, Motion, Noise, Question, Record, Trace, Unknown, in_words, reasons,
+};
 
 /// The largest error of the depth that is assumed, m.
 const DEPTH_TOLERANCE: f64 = 0.3e-3;
@@ -37,9 +39,10 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
     }
     // There is one, as has been checked.
     let record = read(arguments, &layout, &arguments.traces[0])?;
+    let noise = arguments.noise.noise(&layout)?;
     match &arguments.hypotheses.bank {
-        Some(path) => by_bank(arguments, record, path),
-        None => by_maps(arguments, record),
+        Some(path) => by_bank(arguments, record, noise, path),
+        None => by_maps(arguments, record, noise),
     }
 }
 
@@ -70,26 +73,38 @@ fn told((record, notes): Noted) -> Record {
 }
 
 /// Judges the record at the position for which the maps are.
-fn by_maps(arguments: &DetectArguments, record: Noted) -> Result<(), CliError> {
+fn by_maps(arguments: &DetectArguments, record: Noted, noise: Noise) -> Result<(), CliError> {
     let maps = TwoMaps::read(arguments)?;
     let (table, file) = (maps.reference.table(), maps.reference_file);
     let depth = depth(arguments)?.unwrap_or(0.0);
     let record = told(trimmed(arguments, record, table)?);
     let mut warnings = Warnings::default();
     let known = arguments.noise.known()?;
-    let question = question(arguments, &known, depth, table, file, &mut warnings)?;
+    let question = question(
+        arguments,
+        (&known, noise),
+        depth,
+        (table, file),
+        &mut warnings,
+    )?;
     let found = question.judge(maps.hypotheses(&mut warnings)?, &record)?;
     let mut rows = exactly_asked(arguments, &known, depth, record);
     rows.append(found.rows());
     let words = conclusion(&known, found.decision, &found.causes, &found.fit);
     let verdict = (found.decision, &found.causes[..]);
-    tell(arguments, verdict, &words, rows, warnings)
+    rows.value("warnings", warnings.0);
+    tell(arguments, verdict, &words, rows)
 }
 
 /// Searches the record for any inclusion of a bank.
 ///
 /// Implements: CLI-140, CLI-040, CLI-163.
-fn by_bank(arguments: &DetectArguments, record: Noted, path: &Path) -> Result<(), CliError> {
+fn by_bank(
+    arguments: &DetectArguments,
+    record: Noted,
+    noise: Noise,
+    path: &Path,
+) -> Result<(), CliError> {
     let bank = Bank::read(path)?;
     let (files, table) = (&arguments.hypotheses, bank.reference().table());
     let depth = depth(arguments)?.unwrap_or(bank.depth());
@@ -99,7 +114,13 @@ fn by_bank(arguments: &DetectArguments, record: Noted, path: &Path) -> Result<()
     let mut warnings = Warnings::default();
     let known = arguments.noise.known()?;
     let search = BankSearch {
-        question: question(arguments, &known, depth, table, path, &mut warnings)?,
+        question: question(
+            arguments,
+            (&known, noise),
+            depth,
+            (table, path),
+            &mut warnings,
+        )?,
         bank: &bank,
         prior: prior.as_deref(),
         simulations: files.simulations.map(|number| (number, files.seed)),
@@ -112,7 +133,8 @@ fn by_bank(arguments: &DetectArguments, record: Noted, path: &Path) -> Result<()
     rows.append(found.rows(&bank)?);
     let words = conclusion(&known, found.decision, &found.causes, &found.fit);
     let verdict = (found.decision, &found.causes[..]);
-    tell(arguments, verdict, &words, rows, warnings)
+    rows.value("warnings", warnings.0);
+    tell(arguments, verdict, &words, rows)
 }
 
 /// The record without the samples outside `map`, if --trim is given.
@@ -132,15 +154,13 @@ fn trimmed(
 /// The question to ask of a sweep at `depth` over the gel of `reference`, the map in `file`.
 fn question<'a>(
     arguments: &DetectArguments,
-    known: &'a Known,
+    (known, noise): (&'a Known, Noise),
     depth: f64,
-    reference: &ForceTable,
-    file: &Path,
+    (reference, file): (&ForceTable, &Path),
     warnings: &mut Warnings,
 ) -> Result<Question<'a>, CliError> {
     let unknown = &known.unknown;
     let depth_tolerance = depth_tolerance(arguments);
-    let noise = arguments.noise.noise(&arguments.sweep.layout.get()?)?;
     if noise.sd.is_none() && !unknown.contains(&Unknown::Variance) {
         refuse!("--known variance needs --noise-sd-n, or --noise FILE to estimate it from");
     }
@@ -173,7 +193,7 @@ fn depth(arguments: &DetectArguments) -> Result<Option<f64>, CliError> {
     }
 }
 
-/// What was asked of any model of these traces; `records` begin with theirs.
+/// What was asked of any model of the records of these traces.
 ///
 /// Implements: CLI-045.
 fn asked(
@@ -184,7 +204,6 @@ fn asked(
 ) -> Rows {
     let mut rows = Rows::default();
     let path = |path: &Path| path.display().to_string();
-    let records = &records[..traces.len()];
     match (traces, depths, records) {
         ([trace], [depth], [record]) => {
             rows.value("trace", path(trace));
@@ -241,10 +260,8 @@ fn tell(
     arguments: &DetectArguments,
     (decision, causes): (Option<Decision>, &[Cause]),
     words: &str,
-    mut rows: Rows,
-    warnings: Warnings,
+    rows: Rows,
 ) -> Result<(), CliError> {
-    rows.value("warnings", warnings.0);
     let table = format!("{}\n{words}\n", rows.table());
     let answer = Envelope::new("palpate-detection", 4, rows);
     arguments.format.of_one().print(&answer, || table)?;

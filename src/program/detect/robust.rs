@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 
+use serde_json::json;
+
 use super::arguments::{AnswerFormat, ModelName};
 use super::{DetectArguments, Noted, TwoMaps, Warnings, asked, many, tell, told, trimmed};
 use crate::CliError;
 use crate::error::refuse;
 use crate::output::{note, write};
-use serde_json::json;
-
 use palpate::bank::Bank;
 use palpate::chart::explanation_figure;
 use palpate::csv::Layout;
@@ -61,11 +61,7 @@ pub fn check_options(arguments: &DetectArguments) -> Result<(), CliError> {
     if model.model == ModelName::Exact && files.figure.is_some() && files.bank.is_none() {
         refuse!("--figure with --model exact needs --bank");
     }
-    let is_many = arguments.traces.len() > 1 && !model.together;
-    if is_many && files.figure.is_some() {
-        refuse!("--figure draws one place; give one trace, or --together");
-    }
-    if is_many && model.model == ModelName::Exact {
+    if arguments.traces.len() > 1 && model.model == ModelName::Exact {
         refuse!("--model exact judges one trace");
     }
     let is_csv = arguments.format == AnswerFormat::Csv;
@@ -99,22 +95,30 @@ pub fn detect(arguments: &DetectArguments, layout: &Layout) -> Result<(), CliErr
     let is_csv = arguments.format == AnswerFormat::Csv;
     let is_alone = traces == arguments.traces && traces.len() == 1 && !is_csv;
     let is_one = arguments.model.together || is_alone;
-    let asked = Asked::new(
+    if !is_one && arguments.hypotheses.figure.is_some() {
+        refuse!("--figure draws one place; give one trace, or --together");
+    }
+    let sweeps = if is_one { traces.len() } else { 1 };
+    let asked = Asked {
         arguments,
         layout,
+        depths: depths(arguments, between.depth(), sweeps)?,
         question,
         between,
-        if is_one { traces.len() } else { 1 },
-    )?;
+        warnings,
+        references: Vec::new(),
+        changes: BTreeMap::new(),
+    };
+    let asked = asked.with_gels()?;
     if is_one {
-        one(&asked, &traces, warnings)
+        one(&asked, &traces)
     } else {
         many::detect(&asked, &traces)
     }
 }
 
 /// Judges sweeps of one place.
-fn one(asked: &Asked<'_>, traces: &[PathBuf], warnings: Warnings) -> Result<(), CliError> {
+fn one(asked: &Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
     let arguments = asked.arguments;
     let records = traces.iter().map(|path| asked.read(path).map(told));
     let records = records.collect::<Result<Vec<_>, _>>()?;
@@ -124,14 +128,13 @@ fn one(asked: &Asked<'_>, traces: &[PathBuf], warnings: Warnings) -> Result<(), 
         tell_glitches(sweep.record.file(), *replaced);
     }
     let place = asked.bank().zip(place.as_ref());
-    let records: Vec<_> = sweeps.iter().map(|sweep| sweep.record.clone()).collect();
     if let Some(path) = &arguments.hypotheses.figure {
-        write(path, &explanation_figure(&records, &answer, place)?)?;
+        let all: Vec<_> = sweeps.iter().map(|sweep| sweep.record.clone()).collect();
+        write(path, &explanation_figure(&all, &answer, place)?)?;
     }
-    let mut rows = asked.rows(traces, &records);
-    rows.append(answer.rows(place));
+    let rows = asked.rows(traces, &records, answer.rows(place));
     let verdict = (answer.decision, &answer.causes[..]);
-    tell(arguments, verdict, &conclusion(&answer), rows, warnings)
+    tell(arguments, verdict, &conclusion(&answer), rows)
 }
 
 /// Implements: ROB-002.
@@ -172,12 +175,23 @@ enum Between<'a> {
     Bank(&'a Bank, Option<&'a [f64]>),
 }
 
+impl Between<'_> {
+    /// The depth of a sweep for which none is given, m: the parser asks for one beside maps.
+    fn depth(&self) -> f64 {
+        match self {
+            Between::Maps(..) => 0.0,
+            Between::Bank(bank, _) => bank.depth(),
+        }
+    }
+}
+
 /// What is asked of each record.
 pub struct Asked<'a> {
     pub arguments: &'a DetectArguments,
     layout: &'a Layout,
     question: RobustQuestion<'a>,
     between: Between<'a>,
+    warnings: Warnings,
     /// Of each sweep of a place, m.
     depths: Vec<f64>,
     references: Vec<Record>,
@@ -186,44 +200,25 @@ pub struct Asked<'a> {
 }
 
 impl<'a> Asked<'a> {
-    fn new(
-        arguments: &'a DetectArguments,
-        layout: &'a Layout,
-        question: RobustQuestion<'a>,
-        between: Between<'a>,
-        sweeps: usize,
-    ) -> Result<Asked<'a>, CliError> {
-        let depths = match between {
-            Between::Maps(..) => depths(arguments, 0.0, sweeps)?,
-            Between::Bank(bank, _) => depths(arguments, bank.depth(), sweeps)?,
-        };
-        let mut asked = Asked {
-            arguments,
-            layout,
-            question,
-            between,
-            depths,
-            references: Vec::new(),
-            changes: BTreeMap::new(),
-        };
-        let files = arguments.model.reference_sweeps.iter();
-        let references = files.map(|path| asked.read(path).map(told));
-        asked.references = references.collect::<Result<_, _>>()?;
-        let file = arguments.model.gel_uncertainty.as_ref();
+    /// The same with the reference sweeps, and the gels beside that of the maps.
+    fn with_gels(mut self) -> Result<Asked<'a>, CliError> {
+        let model = &self.arguments.model;
+        let references = model.reference_sweeps.iter();
+        let references = references.map(|path| self.read(path).map(told));
+        self.references = references.collect::<Result<_, _>>()?;
+        let file = model.gel_uncertainty.as_ref();
         let uncertainty = file.map(|file| GelUncertainty::read(file)).transpose()?;
-        let uncertainty = uncertainty.unwrap_or_default().beside(question.known);
-        for &depth in &asked.depths {
-            if let Between::Bank(bank, _) = asked.between {
-                bank.check_depth(depth)?;
-            }
-            let reference = asked.reference();
-            let name = reference.phantom().map_or("", Phantom::name);
-            if let Entry::Vacant(entry) = asked.changes.entry(depth.to_bits()) {
+        let uncertainty = uncertainty.unwrap_or_default().beside(self.question.known);
+        let reference = self.reference();
+        let name = reference.phantom().map_or("", Phantom::name);
+        for &depth in &self.depths {
+            self.bank().map_or(Ok(()), |bank| bank.check_depth(depth))?;
+            if let Entry::Vacant(entry) = self.changes.entry(depth.to_bits()) {
                 let found = GelChanges::new(reference, depth, &uncertainty);
                 entry.insert(found.map_err(CliError::fem(name))?);
             }
         }
-        Ok(asked)
+        Ok(self)
     }
 
     /// The map without an inclusion.
@@ -276,8 +271,8 @@ impl<'a> Asked<'a> {
         })
     }
 
-    /// What was asked of the records of these traces; `records` begin with theirs.
-    pub fn rows(&self, traces: &[PathBuf], records: &[Record]) -> Rows {
+    /// What was asked of the records of these traces, and the `answer`.
+    pub fn rows(&self, traces: &[PathBuf], records: &[Record], answer: Rows) -> Rows {
         let mut rows = asked(self.arguments, traces, &self.depths, records);
         let files = self.arguments.model.reference_sweeps.iter();
         let files: Vec<_> = files.map(|file| file.display().to_string()).collect();
@@ -285,6 +280,8 @@ impl<'a> Asked<'a> {
         rows.value("known", json!(self.question.known));
         rows.value("sure", self.question.sure);
         rows.value("zeroed", self.question.is_zeroed);
+        rows.append(answer);
+        rows.value("warnings", self.warnings.0.clone());
         rows
     }
 }
