@@ -28,6 +28,43 @@ pub struct Modes {
     pub u: Vec<f64>,
     /// The width of the sweep, m.
     pub width: f64,
+    /// Samples × frequencies above those of the modes: cos(ω(n + ½)).
+    waves: DMatrix<f64>,
+    /// White noise, then those that are not.
+    shapes: Vec<NoiseShape>,
+}
+
+/// The power of noise over the frequencies above those of the modes, but for its size.
+#[derive(Debug, Clone)]
+struct NoiseShape {
+    /// Its corner frequency and share of white noise; none of white noise.
+    corner: Option<(f64, f64)>,
+    powers: Vec<f64>,
+    /// Σ of their logarithms.
+    logs: f64,
+}
+
+impl NoiseShape {
+    fn new(corner: Option<(f64, f64)>, frequencies: &[f64]) -> NoiseShape {
+        let power = |&at: &f64| corner.map_or(1.0, |(corner, share)| coloured(at, corner, share));
+        let powers: Vec<f64> = frequencies.iter().map(power).collect();
+        let logs = powers.iter().map(|power| libm::log(*power)).sum();
+        NoiseShape {
+            corner,
+            powers,
+            logs,
+        }
+    }
+
+    /// ln of the likelihood of powers, and σ², in noise of this shape with at least the power `floor`.
+    fn fitted(&self, powers: &[f64], floor: f64) -> [f64; 2] {
+        let pairs = powers.iter().zip(&self.powers);
+        let sum: f64 = pairs.map(|(power, shape)| power / shape).sum();
+        let count = powers.len() as f64;
+        let variance = f64::max(sum / count, floor.max(f64::MIN_POSITIVE));
+        let likelihood = -0.5 * (count * libm::log(variance) + self.logs + sum / variance);
+        [likelihood, variance]
+    }
 }
 
 /// The noise of one channel: its power at each mode, and at the highest frequency.
@@ -68,7 +105,25 @@ impl Modes {
             _ => libm::cos(PI * (mode - 1) as f64 * 0.5 * (u[sample] + 1.0)),
         };
         let basis = DMatrix::from_fn(samples, count, value).qr().q();
-        Modes { basis, u, width }
+        let (above, quarters) = (count + 1..samples.max(count + 1), 4 * samples);
+        let quarter = |of: usize| libm::cos(0.5 * PI * of as f64 / samples as f64);
+        let quarters: Vec<f64> = (0..quarters).map(quarter).collect();
+        let wave = |sample: usize, mode: usize| {
+            quarters[(above.start + mode) * (2 * sample + 1) % quarters.len()]
+        };
+        let waves = DMatrix::from_fn(samples, above.len(), wave);
+        let frequencies: Vec<f64> = above.map(|mode| frequency(mode, samples)).collect();
+        let corners = CORNERS
+            .iter()
+            .flat_map(|corner| WHITE_SHARES.map(|share| (*corner, share)));
+        let shapes = std::iter::once(None).chain(corners.map(Some));
+        Modes {
+            basis,
+            u,
+            width,
+            waves,
+            shapes: shapes.map(|of| NoiseShape::new(of, &frequencies)).collect(),
+        }
     }
 
     /// The number of modes.
@@ -130,52 +185,45 @@ impl Modes {
     ///
     /// Implements: ROB-011.
     pub fn noise(&self, channel: &[f64], step: f64, is_white: bool) -> Spectrum {
-        let left = self.residual(channel);
-        let (samples, first) = (self.samples(), self.count() + 1);
-        let frequency = |mode: usize| PI * mode as f64 / samples as f64;
-        let quarter = |of: usize| libm::cos(0.5 * frequency(of));
-        let waves: Vec<f64> = (0..4 * samples).map(quarter).collect();
-        let power = |mode: usize| {
-            // cos(ω(n + ½)).
-            let wave = |at: usize| waves[mode * (2 * at + 1) % waves.len()];
-            let sum: f64 = left.iter().enumerate().map(|(at, r)| r * wave(at)).sum();
-            2.0 * sum * sum / samples as f64
-        };
-        let powers: Vec<f64> = (first..samples).map(power).collect();
+        let left = DVector::from_vec(self.residual(channel));
+        let samples = self.samples();
+        let power = |sum: &f64| 2.0 * sum * sum / samples as f64;
+        let powers: Vec<f64> = self.waves.tr_mul(&left).iter().map(power).collect();
         let floor = step * step / 12.0;
-        // ln of the likelihood, and σ², of noise with that shape.
-        let fitted = |shape: &dyn Fn(f64) -> f64| {
-            let shapes = (first..samples).map(|mode| shape(frequency(mode)));
-            let pairs = powers.iter().zip(shapes);
-            let (sum, logs) = pairs.fold((0.0, 0.0), |(sum, logs), (power, shape)| {
-                (sum + power / shape, logs + libm::log(shape))
-            });
-            let count = powers.len() as f64;
-            let variance = f64::max(sum / count, floor.max(f64::MIN_POSITIVE));
-            let likelihood = -0.5 * (count * libm::log(variance) + logs + sum / variance);
-            (likelihood, variance)
+        let shapes = if is_white {
+            &self.shapes[..1]
+        } else {
+            &self.shapes
         };
-        let (white, variance) = fitted(&|_| 1.0);
-        let mut best = (white + COLOURED, variance, None);
-        let corners = if is_white { &[][..] } else { &CORNERS };
-        for &corner in corners {
-            for share in WHITE_SHARES {
-                let (likelihood, variance) = fitted(&|at| coloured(at, corner, share));
-                if likelihood > best.0 {
-                    best = (likelihood, variance, Some((corner, share)));
-                }
+        let (mut best, mut most) = ((0.0, None), f64::NEG_INFINITY);
+        for shape in shapes {
+            let [likelihood, variance] = shape.fitted(&powers, floor);
+            let beside = if shape.corner.is_none() {
+                COLOURED
+            } else {
+                0.0
+            };
+            if likelihood + beside > most {
+                (best, most) = ((variance, shape.corner), likelihood + beside);
             }
         }
-        let (_, scale, shape) = best;
+        let (scale, shape) = best;
         let at = |mode: usize| match shape {
             None => scale,
-            Some((corner, share)) => floor.max(scale * coloured(frequency(mode), corner, share)),
+            Some((corner, share)) => {
+                floor.max(scale * coloured(frequency(mode, samples), corner, share))
+            }
         };
         Spectrum {
             of_modes: (0..self.count()).map(at).collect(),
             variance: (1..samples).map(at).sum::<f64>() / (samples - 1) as f64,
         }
     }
+}
+
+/// The frequency of a mode of so many samples, in radians a sample.
+fn frequency(mode: usize, samples: usize) -> f64 {
+    PI * mode as f64 / samples as f64
 }
 
 /// The power of noise with a corner frequency and a share of white noise, over that at frequency 0.
