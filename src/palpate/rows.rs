@@ -67,12 +67,13 @@ impl Rows {
         self.0.push(Row { key, value, line });
     }
 
-    /// Adds a number of each of several sweeps, or the number of one.
-    pub fn list(&mut self, key: &'static str, label: &str, numbers: &[f64]) {
+    /// Adds a number of each of several sweeps, or the number of one; a missing one is null.
+    pub fn list(&mut self, key: &'static str, label: &str, numbers: &[Option<f64>]) {
         match numbers {
             [number] => self.number(key, label, *number),
             _ => {
-                let text: Vec<String> = numbers.iter().map(|number| digits(*number)).collect();
+                let text = |number: &Option<f64>| number.map_or("none".into(), digits);
+                let text: Vec<String> = numbers.iter().map(text).collect();
                 self.shown(key, label, json!(numbers), text.join(", "));
             }
         }
@@ -198,9 +199,11 @@ impl RobustAnswer {
             }
             place_rows(bank, place, &mut rows);
         }
-        let channels =
-            |of: fn(&Force<f64>) -> f64| self.noise_sd.iter().map(of).collect::<Vec<_>>();
-        rows.list("level", "force level / reference map", &self.levels);
+        let channels = |of: fn(&Force<Option<f64>>) -> Option<f64>| {
+            self.noise_sd.iter().map(of).collect::<Vec<_>>()
+        };
+        let levels: Vec<_> = self.levels.iter().copied().map(Some).collect();
+        rows.list("level", "force level / reference map", &levels);
         rows.list(
             "noise_sd_lateral_n",
             "noise sd, lateral, N",

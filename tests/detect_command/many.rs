@@ -13,7 +13,7 @@ fn folder() -> [&'static str; 2] {
     std::fs::create_dir_all(place().at("many")).unwrap();
     place().write("many/b with.csv", with);
     place().write("many/a,without.CSV", without);
-    place().write("many/c broken.csv", "position_mm,normal_force_n\n0,1\n");
+    place().write("many/c broken.csv", "position_mm,lateral_force_n\n0,1\n");
     place().write("many/notes.txt", "none");
     let machine = place().read("with.csv").replace("lateral_force_n", "Fx");
     place().write("machine.csv", machine);
@@ -30,7 +30,7 @@ fn each_record_of_a_folder_is_judged_alone() {
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert_has(
         said,
-        "many/c broken.csv:1: no column lateral_force_n|palpate: refused: 1 of 3 files",
+        "many/c broken.csv:1: no column normal_force_n|palpate: refused: 1 of 3 files",
     );
     let lines: Vec<Value> = told
         .lines()
@@ -56,7 +56,7 @@ fn each_record_of_a_folder_is_judged_alone() {
     assert_eq!([&lines[0]["trace"], &lines[1]["trace"]], files);
     assert_has(
         lines[2]["error"].as_str().unwrap(),
-        "no column lateral_force_n",
+        "no column normal_force_n",
     );
     let figure = place().refused(&format!("{command} --figure many.svg"));
     assert_eq!(

@@ -21,7 +21,7 @@ fn bad_files_are_refused_with_file_and_line() {
     let head = "position_mm,lateral_force_n,normal_force_n\n";
     for (name, rows) in [
         ("word.csv", "0,0,1\n1,zero,1\n"),
-        ("nan.csv", "0,0,NaN\n"),
+        ("infinite.csv", "0,0,inf\n"),
         ("unsorted.csv", "0,0,1\n1,0,1\n0.5,0,1\n2,0,1\n"),
         ("far.csv", "0,0,1\n9,0,1\n"),
         ("away.csv", "9,0,1\n9.5,0,1\n"),

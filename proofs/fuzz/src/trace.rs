@@ -7,7 +7,7 @@ use crate::map::check_csv;
 use crate::message::check_file_message;
 use crate::{FILE, Outcome, judged};
 
-/// An accepted trace has finite forces at positions that go one way but for jitter, and is the same when these are
+/// An accepted trace has finite forces, lateral ones or none, at positions that go one way but for jitter, and is the same when these are
 /// written and read again; a refusal names file and line, and quotes what stands there.
 pub fn trace_csv(text: &str) -> Outcome {
     let refused = |error: Refusal| {
@@ -41,10 +41,9 @@ fn check_trace(trace: Trace, text: &str) {
     assert!(!positions.is_empty() && positions.iter().all(|x| x.is_finite()));
     assert!(positions[0] <= positions[positions.len() - 1]);
     let forces = record.forces();
-    assert_eq!(
-        [forces.lateral.len(), forces.normal.len()],
-        [positions.len(); 2]
-    );
+    assert_eq!(forces.normal.len(), positions.len());
+    let has_lateral = !forces.lateral.is_empty();
+    assert!(!has_lateral || forces.lateral.len() == positions.len());
     assert!(
         forces
             .lateral
@@ -59,13 +58,17 @@ fn check_trace(trace: Trace, text: &str) {
 
 /// The record as a file; the digits name each number to the bit.
 fn written(record: &Record) -> String {
-    let mut text = String::from("lateral_force_n,position_m,normal_force_n\n");
     let forces = record.forces();
+    let lateral = |at: usize| forces.lateral.get(at).map(|force| format!(",{force:?}"));
+    let head = if forces.lateral.is_empty() {
+        ""
+    } else {
+        ",lateral_force_n"
+    };
+    let mut text = format!("position_m,normal_force_n{head}\n");
     for (at, position) in record.positions().iter().enumerate() {
-        text += &format!(
-            "{:?},{position:?},{:?}\n",
-            forces.lateral[at], forces.normal[at]
-        );
+        let lateral = lateral(at).unwrap_or_default();
+        text += &format!("{position:?},{:?}{lateral}\n", forces.normal[at]);
     }
     text
 }

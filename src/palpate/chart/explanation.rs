@@ -38,7 +38,12 @@ pub fn explanation_figure(
 ) -> Result<String, Refusal> {
     let mut panels = Vec::new();
     for (sweep, record) in records.iter().enumerate() {
-        for channel in [1, 0] {
+        let channels = if record.forces().lateral.is_empty() {
+            &[1][..]
+        } else {
+            &[1, 0]
+        };
+        for &channel in channels {
             let mut panel = record_panel(record, answer, [sweep, channel]);
             panel.heading = match records.len() {
                 1 => format!("{} (N)", CHANNELS[channel]),
@@ -107,7 +112,7 @@ fn points<'a>(record: &'a Record, forces: &'a [f64]) -> impl Iterator<Item = (f6
 }
 
 /// A range with some room at both ends.
-fn roomy(values: impl Iterator<Item = f64>) -> [f64; 2] {
+pub(super) fn roomy(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let [low, high] = extremes(values).unwrap_or_default();
     let room = (0.05 * (high - low)).max(1e-6);
     match room.is_finite() {
@@ -160,30 +165,38 @@ fn left_panels(record: &Record, answer: &RobustAnswer, at: [usize; 2]) -> Vec<Pa
         let left = pairs.map(|(force, expected)| force - expected);
         left.collect::<Vec<f64>>()
     });
-    let noise = 2.0 * answer.noise_sd[at[0]].into_array()[at[1]];
+    let noise_sd = answer.noise_sd[at[0]].into_array()[at[1]].unwrap_or_default();
     let sizes = left.iter().flatten().map(|left| left.abs());
-    let most = 1.05 * sizes.fold(noise, f64::max).max(1e-6);
-    let [from, to] = roomy(record.positions().iter().map(|x| 1e3 * x));
+    let most = 1.05 * sizes.fold(2.0 * noise_sd, f64::max).max(1e-6);
+    let x = roomy(record.positions().iter().map(|x| 1e3 * x));
     let panel = |(hypothesis, left): (usize, &Vec<f64>)| {
         let (name, colour) = HYPOTHESES[hypothesis];
-        let band = vec![(from, -noise), (to, -noise), (to, noise), (from, noise)];
-        let zero = Line::new(INK, vec![(from, 0.0), (to, 0.0)]).wide(1.0);
+        let mut panel = residual_panel(format!("What is left {name} (N)"), x, noise_sd);
         let dots = Line::new(colour, points(record, left).collect());
-        let heading = format!("What is left {name} (N)");
-        let [x, y] = [[from, to], [-most, most]];
-        Panel {
-            cells: vec![Cells {
-                fill: BAND,
-                edge: BAND,
-                areas: vec![band],
-            }],
-            ..Panel::new(heading, [x, y], 60, vec![zero, dots.wide(0.0).dotted(2)])
-        }
+        panel.lines.push(dots.wide(0.0).dotted(2));
+        panel.y = [-most, most];
+        // The key stands once.
+        panel.key.truncate(1 - hypothesis);
+        panel
     };
-    let mut panels: Vec<_> = left.iter().enumerate().map(panel).collect();
+    left.iter().enumerate().map(panel).collect()
+}
+
+/// An empty panel for what is left of a record, with the band of two standard deviations of the noise.
+pub(super) fn residual_panel(heading: String, x: [f64; 2], noise_sd: f64) -> Panel {
+    let ([from, to], noise) = (x, 2.0 * noise_sd);
+    let band = vec![(from, -noise), (to, -noise), (to, noise), (from, noise)];
+    let zero = Line::new(INK, vec![(from, 0.0), (to, 0.0)]).wide(1.0);
     let words = format!("noise: two standard deviations, {} N", digits(noise));
-    panels[0].key = vec![Line::area(BAND, Vec::new()).named(words)];
-    panels
+    Panel {
+        cells: vec![Cells {
+            fill: BAND,
+            edge: BAND,
+            areas: vec![band],
+        }],
+        key: vec![Line::area(BAND, Vec::new()).named(words)],
+        ..Panel::new(heading, [x, [-noise, noise]], 60, vec![zero])
+    }
 }
 
 /// The probability of each value of a parameter that the bank varies, as a bar.

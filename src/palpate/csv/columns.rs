@@ -1,6 +1,9 @@
 //! Which column of a file holds which quantity: by the names that this project writes, by those that laboratories use, or as the user says.
 
+use std::collections::BTreeMap;
 use std::str::FromStr;
+
+use serde::{Deserialize, Deserializer, de::Error};
 
 use super::split;
 use crate::decimal::parse_scaled;
@@ -44,7 +47,10 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ),
     ("position", POSITIONS),
     ("lateral", POSITIONS),
-    ("depth", &["indentation", "indentation_depth"]),
+    (
+        "depth",
+        &["indentation", "indentation_depth", "displacement"],
+    ),
     ("time", &["t", "timestamp", "elapsed_time"]),
 ];
 const POSITIONS: &[&str] = &[
@@ -119,7 +125,25 @@ impl FromStr for Layout {
     }
 }
 
+/// From a table with an entry for each quantity: `normal = "-Load[mN]"`.
+///
+/// Implements: CLI-174.
+impl<'de> Deserialize<'de> for Layout {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Layout, D::Error> {
+        let table = BTreeMap::<String, String>::deserialize(deserializer)?;
+        let list = table.iter().map(|(key, name)| format!("{key}=\"{name}\""));
+        let list = list.collect::<Vec<_>>().join(",");
+        list.parse().map_err(D::Error::custom)
+    }
+}
+
 impl Layout {
+    /// Whether a column is stated.
+    pub(super) fn states(&self, column: Column) -> bool {
+        let mut keys = column.iter().map(|names| key(quantity(names)));
+        keys.any(|key| self.columns.iter().any(|stated| stated.quantity == key))
+    }
+
     /// Checks that a table of `columns` has what is stated.
     ///
     /// Implements: MAP-046.
@@ -292,6 +316,14 @@ pub(super) fn find(header: &[&str], column: Column, layout: &Layout) -> Result<F
     let names = column.iter().copied().flatten().map(|(name, _)| *name);
     let names: Vec<_> = names.collect();
     Err(format!("no column {}", names.join(" or ")))
+}
+
+/// Whether a field of a header is a name of a column.
+pub(super) fn names(field: &str, column: Column) -> bool {
+    let is_name = |names: &&[Named], by| read(field, names, by).is_some();
+    let ways = [By::Name, By::Synonym, By::Unitless];
+    ways.iter()
+        .any(|by| column.iter().any(|names| is_name(names, *by)))
 }
 
 /// The name of a field of the header. A force without a unit is in N and a time in s; a length must have one.

@@ -6,7 +6,7 @@ use crate::refusal::{Refusal, shortened};
 
 mod columns;
 
-use columns::{By, Found, find};
+use columns::{By, Found, find, names};
 pub use columns::{Column, Layout};
 
 /// Lines among which the header is looked for.
@@ -48,6 +48,37 @@ impl<const N: usize> Rows<N> {
         expected: &str,
         layout: &Layout,
     ) -> Result<Self, Refusal> {
+        let (rows, missing) = Rows::read(text, columns, expected, layout)?;
+        missing.map_or(Ok(rows), |(_, refusal)| Err(refusal))
+    }
+
+    /// As [`Rows::parse_as`], of samples, of which those that lack a number, empty or NaN, are left out with a note.
+    ///
+    /// # Errors
+    /// As [`Rows::parse_as`].
+    ///
+    /// Implements: MAP-048.
+    pub fn parse_samples(
+        text: &str,
+        columns: [Column; N],
+        expected: &str,
+        layout: &Layout,
+    ) -> Result<Self, Refusal> {
+        let (mut rows, missing) = Rows::read(text, columns, expected, layout)?;
+        if let Some((count, _)) = missing {
+            let note = format!("samples with a missing number are not used: {count}");
+            rows.notes.push(note);
+        }
+        Ok(rows)
+    }
+
+    /// The table without the rows in which a number is missing; how many these are, if any, and what is wrong with the first.
+    fn read(
+        text: &str,
+        columns: [Column; N],
+        expected: &str,
+        layout: &Layout,
+    ) -> Result<(Self, Option<(usize, Refusal)>), Refusal> {
         layout.check(&columns)?;
         let ((first, line), rest) = header_and_rows(text);
         let lines = std::iter::once((first, line)).chain(rest);
@@ -68,23 +99,44 @@ impl<const N: usize> Rows<N> {
         }
         // Where commas separate the fields, none is a decimal comma.
         let mut mark = (header.separator == ',').then_some('.');
-        let row = |&(line, row): &(usize, &str)| match header.numbers(row, &mut mark) {
+        let mut row = |&(line, row): &(usize, &str)| match header.numbers(row, &mut mark) {
             Ok(numbers) => Ok((line, numbers)),
             Err(refusal) => Err(Refusal::at(refusal, line)),
         };
-        let rows = rows[..rows.len() - footer].iter().map(row);
-        let rows = rows.collect::<Result<_, _>>()?;
+        let rows = rows[..rows.len() - footer].iter();
+        let (missing, rows): (Vec<&_>, Vec<&_>) = rows.partition(|(_, row)| header.lacks(row));
+        let first = missing.first().copied();
+        let first = first.and_then(|first| row(first).err());
+        let rows = rows.into_iter().map(row).collect::<Result<_, _>>()?;
         notes.extend(header.unused());
         if mark == Some(',') {
             notes.push("commas in its numbers are decimal commas".into());
         }
-        Ok(Rows {
+        let rows = Rows {
             line: lines[header.at].0,
             names: header.found.map(|found| found.name),
             rows,
             notes,
-        })
+        };
+        Ok((rows, first.map(|first| (missing.len(), first))))
     }
+}
+
+/// Whether the header of a table of `columns`, or its layout, names another column.
+///
+/// Implements: CAL-001, TRC-011.
+pub fn names_beside<const N: usize>(
+    text: &str,
+    columns: [Column; N],
+    other: Column,
+    layout: &Layout,
+) -> bool {
+    let ((first, line), rest) = header_and_rows(text);
+    let lines = std::iter::once((first, line)).chain(rest);
+    let lines: Vec<_> = lines.filter(|(line, _)| *line > layout.skipped).collect();
+    let is_named = |header: Header<'_, N>| header.fields.iter().any(|of| names(of, other));
+    layout.states(other)
+        || !lines.is_empty() && Header::find(&lines, columns, layout).is_ok_and(is_named)
 }
 
 /// The header of a table, and where its columns are.
@@ -114,8 +166,9 @@ impl<'a, const N: usize> Header<'a, N> {
         let mut named = None;
         for at in 0..lines.len().min(MOST_LINES_BEFORE) {
             if let Ok(header) = Header::of(lines, at, columns, layout) {
+                let is_row = |row| header.lacks(row) || header.numbers(row, &mut None).is_ok();
                 let row = lines.get(header.below);
-                if row.is_some_and(|(_, row)| header.numbers(row, &mut None).is_ok()) {
+                if row.is_some_and(|(_, row)| is_row(row)) {
                     named = Some(header);
                     break;
                 }
@@ -222,6 +275,18 @@ impl<'a, const N: usize> Header<'a, N> {
             .take_while(|(_, row)| !is_row(row) && !is_number(row));
         let behind = behind.count();
         if behind < rows.len() { behind } else { 0 }
+    }
+
+    /// Whether a row has as many fields as the header, and of a column that counts none or NaN.
+    ///
+    /// Implements: MAP-048.
+    fn lacks(&self, row: &str) -> bool {
+        let fields: Vec<&str> = split(row, self.separator).collect();
+        let is_missing = |found: &Found| {
+            let field = fields[found.place];
+            field.is_empty() || field.eq_ignore_ascii_case("nan")
+        };
+        fields.len() == self.fields.len() && self.found.iter().any(is_missing)
     }
 
     /// The numbers of a row, in SI; the first decimal mark that is there sets that of the file.
@@ -356,6 +421,25 @@ mod tests {
         let found = read("t_s,force_n\n0.5,1\n").unwrap();
         assert_eq!((found.names, found.line), (["t_s", "force_n"], 1));
         assert_eq!(found.rows, [(2, [0.5, 1.0])]);
+    }
+
+    // Verifies: MAP-048.
+    #[test]
+    fn samples_that_lack_a_number_are_left_out_and_counted() {
+        let text = "t_s,force_n,note\n1,,a\n2,5,\n3,NaN,c\n,4,d\n6,7,nan\n";
+        let read = Rows::parse_samples(text, COLUMNS, "", &Layout::default()).unwrap();
+        assert_eq!(read.rows, [(3, [2.0, 5.0]), (6, [6.0, 7.0])]);
+        let notes = [
+            "column \"note\" is not used",
+            "samples with a missing number are not used: 3",
+        ];
+        assert_eq!(read.notes, notes);
+        // A table of other numbers is refused.
+        let refusal = Rows::parse(text, COLUMNS, "").err().unwrap().to_string();
+        assert!(
+            refusal.starts_with("line 2: force_n = \"\", but must be"),
+            "{refusal}"
+        );
     }
 
     // Verifies: MAP-040, MAP-033.

@@ -8,7 +8,6 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use super::classes::{CLASSES, Class, Covariance, Disturbances, Part, SUPPORT_ALONE, SharedBy};
 use super::evidence::{Evidence, Signal, WeightedClass, evidence};
 use super::gates::wrong_level;
-use super::modes::Spectrum;
 use super::sweep::{Cleaned, PreparedSweep, prepared};
 use super::{RobustAnswer, RobustQuestion, RobustSignal, RobustSweep};
 use crate::detect::{Decision, DetectError, ErrorRates, error_rates, map_threshold, posterior};
@@ -32,6 +31,8 @@ pub struct RobustDetector<'a> {
     pub(super) weighted: Vec<WeightedClass>,
     pub(super) signals: Vec<Signal>,
     pub(super) shape: DMatrix<f64>,
+    /// The amplitudes that count, of those of all modes of all sweeps.
+    pub(super) counted: Vec<usize>,
     is_exchanged: bool,
 }
 
@@ -59,14 +60,30 @@ impl<'a> RobustDetector<'a> {
             .collect();
         let alone = (signals.len() == 1).then_some(&SUPPORT_ALONE);
         let all = CLASSES.iter().chain(alone);
-        let (classes, weighted) = weighted(all, question.known, &disturbances, &is_reference);
+        let (classes, mut weighted) = weighted(all, question.known, &disturbances, &is_reference);
         let shape = |(sweep, is_reference): (&Disturbances<'_>, &bool)| Covariance {
             vectors: Vec::new(),
             rest: sweep.shape() * f64::from(!is_reference),
         };
         let shapes: Vec<_> = disturbances.iter().zip(&is_reference).map(shape).collect();
-        let shape = joined(&shapes, |sweep| sweep);
-        let signals: Vec<Signal> = signals.iter().map(|of| in_modes(of, &sweeps)).collect();
+        let mut shape = joined(&shapes, |sweep| sweep);
+        let mut signals: Vec<Signal> = signals.iter().map(|of| in_modes(of, &sweeps)).collect();
+        let counts = sweeps.iter().flat_map(PreparedSweep::counted);
+        let counted: Vec<usize> = counts
+            .enumerate()
+            .filter_map(|(at, is)| is.then_some(at))
+            .collect();
+        if counted.len() < shape.nrows() {
+            let cut =
+                |of: &mut DMatrix<f64>| *of = of.select_rows(&counted).select_columns(&counted);
+            cut(&mut shape);
+            weighted
+                .iter_mut()
+                .for_each(|class| cut(&mut class.covariance));
+            signals
+                .iter_mut()
+                .for_each(|of| of.mean = of.mean.select_rows(&counted));
+        }
         if signals.iter().all(|signal| signal.mean.amax() == 0.0) {
             return Err(refused(DetectError::NoSignal));
         }
@@ -78,14 +95,22 @@ impl<'a> RobustDetector<'a> {
             weighted,
             signals,
             shape,
+            counted,
             is_exchanged,
         })
     }
 
     /// Judges the forces of one record for each sweep.
     ///
-    /// Implements: ROB-003, ROB-004, ROB-031, ROB-060.
+    /// Implements: ROB-003, ROB-004, ROB-005, ROB-031, ROB-060.
+    ///
+    /// # Errors
+    /// A record with lateral forces where the sweep has none, or the other way round.
     pub fn judge(&self, records: &[Force<&[f64]>]) -> Result<RobustAnswer, Refusal> {
+        for (sweep, record) in self.sweeps.iter().zip(records) {
+            let other = Refusal::state("the record has other channels than the sweep", "");
+            other.when(sweep.has_lateral == record.lateral.is_empty())?;
+        }
         let mut answer = RobustAnswer {
             decision: None,
             causes: Vec::new(),
@@ -114,7 +139,8 @@ impl<'a> RobustDetector<'a> {
             record.extend(amplitudes.iter());
             noise.extend(variances.iter());
         }
-        let (record, noise) = (DVector::from_vec(record), DVector::from_vec(noise));
+        let counted = |all: Vec<f64>| DVector::from_vec(all).select_rows(&self.counted);
+        let (record, noise) = (counted(record), counted(noise));
         let found = evidence(&record, &noise, &self.weighted, &self.signals, &self.shape);
         let Some(found) = found else {
             answer.causes.push(Cause::Misfit);
@@ -137,9 +163,13 @@ impl<'a> RobustDetector<'a> {
         for (sweep, forces) in self.sweeps.iter().zip(records) {
             match sweep.cleaned(&self.question, *forces) {
                 Ok(cleaned) => {
-                    let sd = |noise: &Spectrum| libm::sqrt(noise.variance);
+                    let Force { lateral, normal } = cleaned
+                        .noise
+                        .as_ref()
+                        .map(|noise| Some(libm::sqrt(noise.variance)));
+                    let lateral = lateral.filter(|_| sweep.has_lateral);
                     answer.levels.push(cleaned.level);
-                    answer.noise_sd.push(cleaned.noise.as_ref().map(sd));
+                    answer.noise_sd.push(Force { lateral, normal });
                     answer.glitches.push(cleaned.glitches);
                     all.push(cleaned);
                 }
@@ -202,7 +232,8 @@ impl<'a> RobustDetector<'a> {
             each.concat()
         };
         let noise: Vec<f64> = self.sweeps.iter().flat_map(variance).collect();
-        let noise = DMatrix::from_diagonal(&DVector::from_vec(noise));
+        let noise = DVector::from_vec(noise).select_rows(&self.counted);
+        let noise = DMatrix::from_diagonal(&noise);
         let signal = &self.signals[signal].mean;
         let gamma = |of: &WeightedClass| {
             // A class without a density has no record either.

@@ -66,7 +66,11 @@ impl RobustDetector<'_> {
         let mut covariance = with? + &self.shape * (share * share);
         covariance.ger(variance, &signal.mean, &signal.mean, 1.0);
         let with = fitted(record, noise, &signal.mean, &covariance)?;
-        let of_sweeps = |mean: &DVector<f64>| {
+        let of_sweeps = |counted: &DVector<f64>| {
+            let all = self.sweeps.iter().map(|sweep| 2 * sweep.modes.count());
+            let mut mean = DVector::zeros(all.sum());
+            let pairs = self.counted.iter().zip(counted.iter());
+            pairs.for_each(|(at, value)| mean[*at] = *value);
             let mut start = 0;
             let forces = self.sweeps.iter().map(|sweep| {
                 let of = mean.rows(start, 2 * sweep.modes.count()).into_owned();

@@ -125,7 +125,7 @@ pub struct RobustAnswer {
     /// Σ F f/Σ f² of the normal force of each sweep.
     pub levels: Vec<f64>,
     /// Standard deviation of the noise of each sweep, N.
-    pub noise_sd: Vec<Force<f64>>,
+    pub noise_sd: Vec<Force<Option<f64>>>,
     /// Samples of each sweep that were replaced.
     pub glitches: Vec<usize>,
     /// What either hypothesis expects of the records, where they were compared.

@@ -21,6 +21,8 @@ const NARROW: f64 = 0.46;
 /// A sweep in its modes.
 pub struct PreparedSweep {
     pub modes: Modes,
+    /// Whether its records have lateral forces.
+    pub has_lateral: bool,
     pub undisturbed: Undisturbed,
     forces: DVector<f64>,
 }
@@ -88,6 +90,7 @@ pub fn prepared(
     let forces = modes.of(channels(&undisturbed.forces));
     Ok(PreparedSweep {
         modes,
+        has_lateral: !record.forces().lateral.is_empty(),
         undisturbed,
         forces,
     })
@@ -111,6 +114,10 @@ impl PreparedSweep {
         }
         let steps = forces.map(gates::step);
         let clean = |(channel, step): (&[f64], f64)| {
+            if channel.is_empty() {
+                // Any forces do where none count.
+                return Ok((vec![0.0; modes.samples()], 0));
+            }
             let mut channel = channel.to_vec();
             let glitches =
                 gates::without_glitches(modes, &mut channel, step).ok_or(Cause::Glitches);
@@ -137,6 +144,12 @@ impl PreparedSweep {
             noise,
             glitches,
         })
+    }
+
+    /// Which amplitudes of the modes count: all, or those of the normal force.
+    pub fn counted(&self) -> impl Iterator<Item = bool> {
+        let count = self.modes.count();
+        (0..2 * count).map(move |mode| self.has_lateral || mode >= count)
     }
 
     /// The amplitudes of a record's modes over a level, beside those of the map, and the variances of their noise.

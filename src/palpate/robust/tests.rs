@@ -400,7 +400,7 @@ fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
         answer.noise_sd[0]
             .into_array()
             .iter()
-            .all(|sd| (0.02..0.03).contains(sd)),
+            .all(|sd| (0.02..0.03).contains(&sd.unwrap())),
         "{answer:?}"
     );
     let [position, depth, diameter, modulus] = place.intervals;
@@ -687,4 +687,54 @@ fn a_reference_sweep_tells_of_the_gel_and_a_light_one_of_the_surface() {
     assert_near(other / alone, 1.0, 0.05);
     let [alone, known] = [&one[..], &beside].map(|sweeps| gamma(sweeps, gel));
     assert!(known > 1.5 * alone, "{alone} {known}");
+}
+
+// Verifies: ROB-005. The limit of a noise that grows is another way to the same number.
+#[test]
+fn a_record_of_one_channel_is_judged_as_if_the_other_had_infinite_noise() {
+    let bank = bank();
+    let over = positions(81);
+    let forces = bank.maps()[7].table().sweep(bank.depth(), &over).unwrap();
+    let pairs = forces.normal.iter().zip(noise(81, 3));
+    let normal: Vec<f64> = pairs.map(|(force, n)| force + 0.1 * n).collect();
+    let judged = |lateral: &[f64], sd: f64| {
+        let record = Record::new("sweep", &over, Force::new(lateral, &normal[..])).unwrap();
+        let question = RobustQuestion {
+            noise_sd: Some(Force::new(sd, 0.1)),
+            ..RobustQuestion::default()
+        };
+        let sweep = at_place(&bank, &record, None);
+        question.locate(&bank, None, &[sweep]).unwrap()
+    };
+    let (one, place) = judged(&[], 0.1);
+    let (both, place_of_both) = judged(&forces.lateral, 1e6);
+    // An information of (1 N/1e6 N)² is lost, times the condition of the covariances.
+    assert!(
+        (one.theta - both.theta).abs() < 1e-6,
+        "{} {}",
+        one.theta,
+        both.theta
+    );
+    let [one_at, both_at] = [&place, &place_of_both].map(|of| of.intervals[0].unwrap().estimate);
+    assert!((one_at - both_at).abs() < 1e-9);
+    assert_eq!(one.decision, both.decision);
+    assert_eq!(
+        one.noise_sd[0],
+        Force {
+            lateral: None,
+            normal: Some(0.1)
+        }
+    );
+    // What the lateral force would have said.
+    let (all, _) = judged(&forces.lateral, 0.1);
+    assert!(all.theta > one.theta + 1.0, "{} {}", all.theta, one.theta);
+    // The exact model refuses.
+    let record = Record::new("sweep", &over, Force::new(&[][..], &normal)).unwrap();
+    let rows = one.rows(None);
+    assert!(
+        !rows.table().contains("noise sd, lateral"),
+        "{}",
+        rows.table()
+    );
+    assert_eq!(record.forces().lateral.len(), 0);
 }

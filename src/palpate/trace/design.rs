@@ -78,6 +78,12 @@ impl Design {
         without: &ForceTable,
         record: &Record,
     ) -> Result<Design, Refusal> {
+        let missing = Refusal::state(
+            "the exact model needs lateral forces, which the record lacks",
+            "use the robust model",
+        );
+        let missing = missing.in_file(record.file());
+        missing.when(record.forces().lateral.is_empty())?;
         let (depth, depths) = (question.depth, without.depths());
         let expected = |depth| expected(record, without, depth);
         let reference = expected(depth)?;

@@ -157,6 +157,11 @@ impl Noise {
         let expected = format!("give at least {LEAST_BLANK}, to estimate the noise");
         let few = Refusal::state(format!("{samples} samples"), expected).in_file(&*blank.file);
         few.when(samples < LEAST_BLANK)?;
+        let missing = Refusal::state(
+            "a blank sweep without lateral forces",
+            "state the noise (--noise-sd-n)",
+        );
+        missing.in_file(&*blank.file).when(!blank.has_lateral)?;
         let told = || {
             let step = 2.0 / (samples - 1) as f64;
             let line = (0..samples).map(|sample| step * sample as f64 - 1.0);
@@ -167,7 +172,10 @@ impl Noise {
                 let samples = blank.samples.iter();
                 samples.map(|(_, sample)| sample[channel]).collect()
             };
-            let mut left: Force<Vec<f64>> = Force::new(column(1), column(2));
+            let mut left: Force<Vec<f64>> = Force {
+                lateral: column(2),
+                normal: column(1),
+            };
             let root = libm::sqrt(samples as f64 - 2.0);
             let channels = Force::new(&mut left.lateral, &mut left.normal);
             let sd = channels.map(|channel| lines.project(channel) / root);

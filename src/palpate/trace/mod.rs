@@ -58,7 +58,7 @@ pub use design::{Unknown, in_words, nuisances};
 pub use fit::{Cause, Fit, MISFIT_RATE, reasons};
 pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
 
-use crate::csv::{Column, Layout, Rows};
+use crate::csv::{Column, Layout, Rows, names_beside};
 use crate::decimal::mm;
 use crate::detect::DetectError;
 use crate::force::Force;
@@ -67,14 +67,14 @@ use crate::refusal::Refusal;
 use crate::stats::error::check_samples;
 use crate::text::extremes;
 
-/// Position, or time where there is no position; lateral force, normal force.
+/// Position, or time where there is no position; normal force, lateral force, which may be missing.
 const COLUMNS: [Column; 3] = [
     &[
         &[("position_mm", -3), ("position_m", 0)],
         &[("time_s", 0), ("time_ms", -3)],
     ],
-    &[&[("lateral_force_n", 0), ("lateral_force_mn", -3)]],
     &[&[("normal_force_n", 0), ("normal_force_mn", -3)]],
+    &[&[("lateral_force_n", 0), ("lateral_force_mn", -3)]],
 ];
 /// The headers that are right, for a person.
 const EXPECTED_HEADER: &str = "position_mm,lateral_force_n,normal_force_n, in any order, or time_s for the position, also position_m, time_ms and forces as _mn, or say with --columns what each holds";
@@ -99,10 +99,11 @@ pub struct Trace {
     file: String,
     abscissa: Abscissa,
     samples: Vec<Sample>,
+    has_lateral: bool,
     notes: Vec<String>,
 }
 
-/// The line of a sample, and its abscissa (s or m), lateral and normal force (N).
+/// The line of a sample, and its abscissa (s or m), normal and lateral force (N); without a lateral force 0 for it.
 type Sample = (usize, [f64; 3]);
 
 /// The motion of the probe while times were recorded.
@@ -177,14 +178,27 @@ impl Trace {
     /// # Errors
     /// As [`Trace::from_csv`]; a layout that states what a trace does not have.
     ///
-    /// Implements: MAP-046.
+    /// Implements: MAP-046, MAP-048, TRC-011.
     pub fn from_csv_as(text: &str, file: &str, layout: &Layout) -> Result<Trace, Refusal> {
         let read = || {
-            let table = Rows::parse_as(text, COLUMNS, EXPECTED_HEADER, layout)?;
-            let samples = table.rows;
+            let [abscissa, normal, lateral] = COLUMNS;
+            let has_lateral = names_beside(text, [abscissa, normal], lateral, layout);
+            let (samples, line, name, mut notes): (Vec<Sample>, _, _, _) = if has_lateral {
+                let table = Rows::parse_samples(text, COLUMNS, EXPECTED_HEADER, layout)?;
+                (table.rows, table.line, table.names[0], table.notes)
+            } else {
+                let columns = [abscissa, normal];
+                let table = Rows::parse_samples(text, columns, EXPECTED_HEADER, layout)?;
+                let rows = table.rows.into_iter();
+                let rows = rows.map(|(line, [at, normal])| (line, [at, normal, 0.0]));
+                (rows.collect(), table.line, table.names[0], table.notes)
+            };
+            if !has_lateral {
+                notes.push("there is no lateral force: the normal force alone counts".into());
+            }
             let empty = Refusal::state("no samples under the header", "give at least one row");
-            empty.at(table.line).when(samples.is_empty())?;
-            let abscissa = if table.names[0].starts_with("time") {
+            empty.at(line).when(samples.is_empty())?;
+            let abscissa = if name.starts_with("time") {
                 check_times(&samples)?;
                 Abscissa::Time
             } else {
@@ -195,7 +209,8 @@ impl Trace {
                 file: file.into(),
                 abscissa,
                 samples,
-                notes: table.notes,
+                has_lateral,
+                notes,
             })
         };
         read().map_err(|refusal: Refusal| refusal.in_file(file))
@@ -234,7 +249,7 @@ impl Trace {
             )),
         };
         placed.map_err(|refusal| refusal.in_file(&*file))?;
-        Ok(Record::of(file, samples))
+        Ok(Record::of(file, samples, self.has_lateral))
     }
 }
 
@@ -301,7 +316,7 @@ fn check_pass(samples: &[Sample]) -> Result<(), Refusal> {
 }
 
 impl Record {
-    /// The record of `forces` (N) at `positions` (m), with the checks of [`Trace::from_csv`]. In messages `name` stands for the file, and the
+    /// The record of `forces` (N; no lateral ones where they were not recorded) at `positions` (m), with the checks of [`Trace::from_csv`]. In messages `name` stands for the file, and the
     /// number of a sample, from 1, for its line.
     ///
     /// ```
@@ -323,18 +338,22 @@ impl Record {
     pub fn new(name: &str, positions: &[f64], forces: Force<&[f64]>) -> Result<Record, Refusal> {
         let read = || {
             check_samples("positions", positions, positions.len())?;
-            check_samples("lateral forces", forces.lateral, positions.len())?;
+            let has_lateral = !forces.lateral.is_empty();
+            if has_lateral {
+                check_samples("lateral forces", forces.lateral, positions.len())?;
+            }
             check_samples("normal forces", forces.normal, positions.len())?;
-            let sample = |k: usize| [positions[k], forces.lateral[k], forces.normal[k]];
+            let lateral = |k| forces.lateral.get(k).copied().unwrap_or_default();
+            let sample = |k: usize| [positions[k], forces.normal[k], lateral(k)];
             let samples: Vec<_> = (0..positions.len()).map(|k| (k + 1, sample(k))).collect();
             check_pass(&samples)?;
-            Ok(Record::of(name.into(), samples))
+            Ok(Record::of(name.into(), samples, has_lateral))
         };
         read().map_err(|refusal: Refusal| refusal.in_file(name))
     }
 
     /// The record of samples over positions that go one way.
-    fn of(file: String, mut samples: Vec<Sample>) -> Record {
+    fn of(file: String, mut samples: Vec<Sample>, has_lateral: bool) -> Record {
         if backwards(&samples) {
             samples.reverse();
         }
@@ -342,7 +361,10 @@ impl Record {
         Record {
             lines: samples.iter().map(|(line, _)| *line).collect(),
             positions: column(0),
-            forces: Force::new(column(1), column(2)),
+            forces: Force {
+                lateral: if has_lateral { column(2) } else { Vec::new() },
+                normal: column(1),
+            },
             file,
         }
     }
@@ -365,7 +387,7 @@ impl Record {
         self.positions.iter().map(way).collect()
     }
 
-    /// The recorded force on the probe, N, one sample for each position.
+    /// The recorded force on the probe, N, one sample for each position; no lateral forces where they were not recorded.
     pub fn forces(&self) -> Force<&[f64]> {
         self.forces.as_deref()
     }
@@ -400,7 +422,10 @@ impl Record {
         }
         let note =
             format!("{left_out} of {all} samples left out, which are outside the maps, {range}");
-        let column = |values: Vec<f64>| kept.iter().map(|&sample| values[sample]).collect();
+        let column = |values: Vec<f64>| {
+            let kept = kept.iter().filter_map(|&sample| values.get(sample));
+            kept.copied().collect()
+        };
         let record = Record {
             lines: kept.iter().map(|&sample| self.lines[sample]).collect(),
             positions: column(self.positions),

@@ -170,3 +170,44 @@ fn a_record_of_numbers_is_that_of_the_same_numbers_in_a_file() {
         assert!(refusal.to_string().starts_with(words), "{refusal}");
     }
 }
+
+// Verifies: TRC-011, MAP-048.
+#[test]
+fn a_file_may_lack_the_lateral_force() {
+    let rows = |count: i32| {
+        (0..count)
+            .map(|k| format!("{k},{}.5\n", k % 3))
+            .collect::<String>()
+    };
+    let text = format!("position_mm,Load (N)\n{}7.5,\n", rows(5));
+    let trace = Trace::from_csv(&text, "t.csv").unwrap();
+    let notes = [
+        "column \"Load (N)\" is read as normal_force_n",
+        "samples with a missing number are not used: 1",
+        "there is no lateral force: the normal force alone counts",
+    ];
+    assert_eq!(trace.notes(), notes);
+    let record = trace.record(None).unwrap();
+    assert_eq!(
+        record.forces(),
+        Force {
+            lateral: &[][..],
+            normal: &[0.5, 1.5, 2.5, 0.5, 1.5]
+        }
+    );
+    let blank = Trace::from_csv(&format!("position_mm,Fz\n{}", rows(200)), "b.csv").unwrap();
+    let error = Noise::of_blank(&blank).unwrap_err().to_string();
+    assert_eq!(
+        error,
+        "b.csv: a blank sweep without lateral forces; state the noise (--noise-sd-n)"
+    );
+    // A column that the user states must be there.
+    let layout = "lateral=Fx".parse().unwrap();
+    let error = Trace::from_csv_as(&text, "t.csv", &layout)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.starts_with("t.csv:1: no column \"Fx\" in the header"),
+        "{error}"
+    );
+}

@@ -82,7 +82,9 @@ pub fn detect(asked: &Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
                     files.push(record.file().to_owned());
                 }
                 let positions = record.positions().iter().map(|x| x.to_bits());
-                let alike = alike.entry(positions.collect()).or_default();
+                let channels = [u64::from(record.forces().lateral.is_empty())];
+                let alike = alike.entry(channels.into_iter().chain(positions).collect());
+                let alike = alike.or_default();
                 alike.push((number, record));
             }
             Err(error) => {

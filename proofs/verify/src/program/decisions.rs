@@ -206,7 +206,7 @@ fn tail(z: f64) -> f64 {
 
 /// Cases, a line each: by what the forces of the record are multiplied, the arguments, and words of the message.
 const REFUSED: &str = "\
-a number that is none: NaN, MAPS --noise-sd-n 0.05, record.csv:2: lateral_force_n
+a number that is none: inf, MAPS --noise-sd-n 0.05, record.csv:2: normal_force_n
 maps that do not differ: 1, --reference with.csv --inclusion with.csv --noise-sd-n 0.05, do not differ
 forces in mN: 1e3, MAPS --noise-sd-n 0.05, another unit
 less noise than stated: 1, MAPS --noise-sd-n 0.25, not as it was stated

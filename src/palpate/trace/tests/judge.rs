@@ -362,8 +362,8 @@ fn a_blank_sweep_tells_its_noise() {
     let found = Noise::of_blank(&trace).unwrap();
     assert_eq!(found.correlation, Correlation::None);
     let found = found.sd.unwrap();
-    close(found.lateral, sd(&trace, 1));
-    close(found.normal, sd(&trace, 2));
+    close(found.normal, sd(&trace, 1));
+    close(found.lateral, sd(&trace, 2));
     let Correlation::Known(length) = Noise::of_blank(&blank(4000, 10, 0.2)).unwrap().correlation
     else {
         panic!("each value was held");
