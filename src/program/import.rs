@@ -6,11 +6,13 @@ use clap::Args;
 
 use super::CliError;
 use super::comparison::{compare, left_out};
+use super::error::refuse;
 use super::layout::LayoutArguments;
 use super::numbers::length;
 use super::output::{note, print, read, write};
 use super::solve::phantom;
-use palpate::force_map::{ForceMap, ForceTable, Measurement, Smoothed, Source};
+use palpate::force::Force;
+use palpate::force_map::{ForceMap, ForceTable, Gridded, Measurement, Smoothed, Source};
 use palpate::phantom::Phantom;
 
 /// Arguments of `palpate import-map`.
@@ -28,6 +30,9 @@ pub struct ImportArguments {
     /// Smooths the forces along the lateral axis by local parabolas of half-width W mm, and reports the noise
     #[arg(long = "smooth-mm", value_name = "W", value_parser = length, allow_hyphen_values = true)]
     half_width: Option<f64>,
+    /// Puts samples at jittered or scattered poses on a grid with this step in mm, or with one of depth and one of lateral position
+    #[arg(long = "grid-mm", value_name = "STEP[,STEP]", value_parser = length, value_delimiter = ',', allow_hyphen_values = true)]
+    grid: Vec<f64>,
     #[command(flatten)]
     layout: LayoutArguments,
     /// Output file [default: standard output]
@@ -42,10 +47,24 @@ pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
     let phantom = arguments.phantom.as_deref().map(phantom).transpose()?;
     let text = read(&arguments.csv)?;
     let file = arguments.csv.display().to_string();
-    let (mut forces, notes) =
-        ForceTable::from_csv_with_notes(&text, &file, &arguments.layout.get()?)?;
-    notes.iter().for_each(|text| note(&file, text));
     let mut measurement = Measurement::new(&file, &arguments.note);
+    measurement.grid = match arguments.grid[..] {
+        [] => None,
+        [step] => Some([step, step]),
+        [depth, lateral] => Some([depth, lateral]),
+        ref steps => refuse!("--grid-mm has {} steps; give one or two", steps.len()),
+    };
+    let layout = arguments.layout.get()?;
+    let (mut forces, notes) = match measurement.grid {
+        None => ForceTable::from_csv_with_notes(&text, &file, &layout)?,
+        Some(steps) => {
+            let read = ForceTable::from_scattered_csv(&text, &file, &layout, steps)?;
+            let (gridded, mut notes) = read;
+            notes.push(shifts(&gridded));
+            (gridded.table, notes)
+        }
+    };
+    notes.iter().for_each(|text| note(&file, text));
     if let Some(half_width) = arguments.half_width {
         let smoothed = forces.smoothed(half_width);
         let smoothed = smoothed.map_err(|refusal| refusal.in_file(&*file))?;
@@ -60,6 +79,18 @@ pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
         Some(path) => write(path, &map.to_json()),
         None => print(&map.to_json()),
     }
+}
+
+/// Implements: MAP-081.
+fn shifts(gridded: &Gridded) -> String {
+    let [depth, lateral] = gridded.largest_shift.map(|shift| 1e3 * shift);
+    let Force {
+        lateral: along,
+        normal,
+    } = gridded.residual;
+    format!(
+        "samples are at most {depth:.3} mm (depth) and {lateral:.3} mm (lateral) from the grid; the planes leave {normal:.4} N (normal) and {along:.4} N (lateral), root mean square"
+    )
 }
 
 /// Implements: CLI-020.

@@ -1,5 +1,6 @@
 //! Measured force maps as CSV (`spec/force-map.md`).
 
+use super::grid::{Gridded, gridded};
 use super::{ForceMap, ForceTable, Matrix, Measurement, Source, increasing};
 use crate::csv::{Column, Layout, Rows};
 use crate::decimal::{format_scaled, mm};
@@ -102,6 +103,27 @@ impl ForceTable {
         let read = || {
             let table = Rows::parse_as(text, COLUMNS, EXPECTED_HEADER, layout)?;
             Ok((on_a_grid(table.rows)?, table.notes))
+        };
+        read().map_err(|refusal: Refusal| refusal.in_file(file))
+    }
+
+    /// As [`ForceTable::from_csv_with_notes`], of samples at any poses, which are put on a grid with these steps of depth and lateral
+    /// position, m.
+    ///
+    /// # Errors
+    /// A header or a row as in [`ForceMap::from_csv`]; a step that is not above 0; a pose of the grid without a sample.
+    ///
+    /// Implements: MAP-080.
+    pub fn from_scattered_csv(
+        text: &str,
+        file: &str,
+        layout: &Layout,
+        steps: [f64; 2],
+    ) -> Result<(Gridded, Vec<String>), Refusal> {
+        let read = || {
+            let table = Rows::parse_samples(text, COLUMNS, EXPECTED_HEADER, layout)?;
+            let samples: Vec<_> = table.rows.iter().map(|(_, sample)| *sample).collect();
+            Ok((gridded(&samples, steps)?, table.notes))
         };
         read().map_err(|refusal: Refusal| refusal.in_file(file))
     }

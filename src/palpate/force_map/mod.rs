@@ -8,6 +8,7 @@
 //! | `interpolation.rs` | forces between and beyond the poses |
 //! | `pair.rs` | whether two maps are one gel without and with an inclusion |
 //! | `certificate.rs` | the quality of a computed map |
+//! | `grid.rs` | measured forces at any poses, put on a grid |
 //! | `smoothing.rs` | measured forces with less of their noise |
 //! | `json.rs`, `csv.rs` | files |
 //!
@@ -29,6 +30,7 @@
 
 mod certificate;
 mod csv;
+mod grid;
 mod interpolation;
 mod json;
 mod pair;
@@ -42,6 +44,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 pub use certificate::{Certificate, Discretization, SmallestDet};
+pub use grid::Gridded;
 pub use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use pair::Hypotheses;
@@ -83,6 +86,9 @@ pub struct Measurement {
         skip_serializing_if = "Option::is_none"
     )]
     pub smoothed_half_width: Option<f64>,
+    /// The steps of depth and lateral position, m, of the grid that the samples were put on; `None` if they were on one.
+    #[serde(rename = "grid_m", default, skip_serializing_if = "Option::is_none")]
+    pub grid: Option<[f64; 2]>,
 }
 
 impl Measurement {
@@ -93,6 +99,7 @@ impl Measurement {
             file: name.to_string_lossy().into_owned(),
             note: note.into(),
             smoothed_half_width: None,
+            grid: None,
         }
     }
 }
@@ -168,6 +175,11 @@ impl ForceMap {
                     let is_right = width > 0.0 && width.is_finite();
                     let key = "source.smoothed_half_width_m";
                     Refusal::value(key, width, "a finite number above 0").when(!is_right)?;
+                }
+                for step in of.grid.iter().flatten() {
+                    let is_right = *step > 0.0 && step.is_finite();
+                    let refusal = Refusal::value("source.grid_m", step, "finite numbers above 0");
+                    refusal.when(!is_right)?;
                 }
             }
         }

@@ -1,0 +1,232 @@
+//! Measured forces at jittered or scattered poses, put on a grid (`spec/force-map.md`).
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{ForceTable, Matrix};
+use crate::decimal::mm;
+use crate::force::Force;
+use crate::refusal::Refusal;
+
+/// A table of forces at the poses of a grid, and how far the samples were from it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Gridded {
+    /// The forces at the poses.
+    pub table: ForceTable,
+    /// The greatest distance of a sample from the nearest depth and lateral position of the grid, m.
+    pub largest_shift: [f64; 2],
+    /// The root mean square of what the planes leave of the samples at their poses, N; 0 where each pose has one sample.
+    pub residual: Force<f64>,
+}
+
+/// A sample: depth, lateral position (m), normal and lateral force (N).
+type Sample = [f64; 4];
+
+/// Singular values below this share of the largest are none: samples on a line do not say what is beside it.
+const RANK: f64 = 1e-9;
+
+/// The forces at the poses of a grid with these `steps` of depth and lateral position, m: at each pose that of a plane through the samples
+/// less than a step away in both, with the weight (1 − |u|³)³ of each distance u over its step.
+///
+/// # Errors
+/// A step that is not above 0; a pose of the grid without a sample.
+///
+/// Implements: MAP-080, MAP-081.
+pub fn gridded(samples: &[Sample], steps: [f64; 2]) -> Result<Gridded, Refusal> {
+    for step in steps {
+        let refusal = Refusal::value("grid", step, "a finite number of metres above 0");
+        refusal.when(!(step > 0.0 && step.is_finite()))?;
+    }
+    let numbers = |axis: usize| -> Vec<i64> {
+        let number = |sample: &Sample| libm::round(sample[axis] / steps[axis]) as i64;
+        let mut numbers: Vec<i64> = samples.iter().map(number).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        numbers
+    };
+    let axes = [numbers(0), numbers(1)];
+    let poses: Vec<[i64; 2]> = (axes[0].iter())
+        .flat_map(|depth| axes[1].iter().map(|lateral| [*depth, *lateral]))
+        .collect();
+    let fits = poses.iter().map(|pose| at_pose(samples, *pose, steps));
+    let fits = fits.collect::<Result<Vec<_>, _>>()?;
+    let [depths, laterals] = [0, 1].map(|axis| {
+        let positions = axes[axis].iter().map(|number| *number as f64 * steps[axis]);
+        positions.collect::<Vec<f64>>()
+    });
+    let matrix = |channel: usize| {
+        let columns = laterals.len();
+        let at = |row: usize, column: usize| fits[row * columns + column].forces[channel];
+        Matrix::from_fn(depths.len(), columns, at)
+    };
+    let shift = |axis: usize| {
+        let away = |sample: &Sample| {
+            let place = sample[axis] / steps[axis];
+            (place - libm::round(place)).abs() * steps[axis]
+        };
+        samples.iter().map(away).fold(0.0, f64::max)
+    };
+    let count = samples.len() as f64;
+    let residual = |channel: usize| {
+        let squares: f64 = fits.iter().map(|fit| fit.squares[channel]).sum();
+        libm::sqrt(squares / count)
+    };
+    Ok(Gridded {
+        table: ForceTable::new(
+            depths.clone(),
+            laterals.clone(),
+            Force::new(matrix(1), matrix(0)),
+        )?,
+        largest_shift: [shift(0), shift(1)],
+        residual: Force::new(residual(1), residual(0)),
+    })
+}
+
+/// Normal and lateral force at a pose, and the squares of what the plane leaves of the samples that are nearest to this pose.
+struct AtPose {
+    forces: [f64; 2],
+    squares: [f64; 2],
+}
+
+/// Implements: MAP-080.
+fn at_pose(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Result<AtPose, Refusal> {
+    let place = |sample: &Sample| [0, 1].map(|axis| sample[axis] / steps[axis] - pose[axis] as f64);
+    let near: Vec<([f64; 2], &Sample)> = samples
+        .iter()
+        .map(|sample| (place(sample), sample))
+        .filter(|(place, _)| place.iter().all(|u| u.abs() < 1.0))
+        .collect();
+    let is_nearest = |place: &[f64; 2]| place.iter().all(|u| u.abs() <= 0.5);
+    if !near.iter().any(|(place, _)| is_nearest(place)) {
+        let [depth, lateral] = [0, 1].map(|axis| mm(pose[axis] as f64 * steps[axis]));
+        let found = format!("no sample near depth {depth} mm, lateral {lateral} mm of the grid");
+        return Err(Refusal::state(found, "choose a coarser grid"));
+    }
+    let tricube = |u: &f64| {
+        let rest = 1.0 - u.abs() * u * u;
+        rest * rest * rest
+    };
+    let weights: Vec<f64> = (near.iter())
+        .map(|(place, _)| place.map(f64::abs).iter().map(tricube).product())
+        .collect();
+    let all: f64 = weights.iter().sum();
+    let mean = |of: &dyn Fn(usize) -> f64| {
+        let weighted = weights
+            .iter()
+            .enumerate()
+            .map(|(at, weight)| weight * of(at));
+        weighted.sum::<f64>() / all
+    };
+    // About the means, which count whatever slopes the samples say nothing of.
+    let middle = [0, 1].map(|axis| mean(&|at| near[at].0[axis]));
+    let about = |place: &[f64; 2]| [place[0] - middle[0], place[1] - middle[1]];
+    let root = |at: usize| libm::sqrt(weights[at]);
+    let design = DMatrix::from_fn(near.len(), 2, |at, axis| {
+        root(at) * about(&near[at].0)[axis]
+    });
+    let decomposed = design.svd(true, true);
+    let least = RANK * libm::sqrt(all);
+    let mut fit = AtPose {
+        forces: [0.0; 2],
+        squares: [0.0; 2],
+    };
+    for channel in [0, 1] {
+        let force = |at: usize| near[at].1[2 + channel];
+        let level = mean(&force);
+        let above = DVector::from_fn(near.len(), |at, _| root(at) * (force(at) - level));
+        let slopes = decomposed.solve(&above, least);
+        let slopes = slopes.map_err(Refusal::because("the plane at a pose"))?;
+        let plane = |place: &[f64; 2]| {
+            let [depth, lateral] = about(place);
+            level + slopes[0] * depth + slopes[1] * lateral
+        };
+        fit.forces[channel] = plane(&[0.0; 2]);
+        let nearest = near.iter().filter(|(place, _)| is_nearest(place));
+        let left = nearest.map(|(place, sample)| sample[2 + channel] - plane(place));
+        fit.squares[channel] = left.map(|left| left * left).sum();
+    }
+    Ok(fit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plane over depth and position, and its lateral force.
+    fn sample([depth, lateral]: [f64; 2]) -> Sample {
+        [
+            depth,
+            lateral,
+            400.0 * depth + 20.0 * lateral,
+            50.0 * lateral,
+        ]
+    }
+
+    /// Samples of it at the poses of a grid.
+    fn samples() -> Vec<Sample> {
+        let poses = (1..=3).flat_map(|row| (-4..=4).map(move |column| (row, column)));
+        let at = |(row, column)| [1e-3 * f64::from(row), 0.5e-3 * f64::from(column)];
+        poses.map(at).map(sample).collect()
+    }
+
+    // Verifies: MAP-080, MAP-081.
+    #[test]
+    fn a_plane_stays_what_it_is_wherever_its_samples_are() {
+        // Everywhere: the multiples of two irrational numbers.
+        let place = |k: u32, step: f64| f64::from(k) * step % 1.0;
+        let anywhere = |k| {
+            [
+                0.6e-3 + 2.8e-3 * place(k, 0.7548776662),
+                4.4e-3 * place(k, 0.5698402910) - 2.2e-3,
+            ]
+        };
+        let scattered = (0..500).map(anywhere).map(sample).collect();
+        for (samples, most) in [(samples(), 0.0), (scattered, 1.0)] {
+            let found = gridded(&samples, [1e-3, 0.5e-3]).unwrap();
+            let (table, exact) = (&found.table, self::samples());
+            assert_eq!((table.depths().len(), table.laterals().len()), (3, 9));
+            for (row, column, normal) in table.forces().normal.entries() {
+                let [_, _, expected, along] = exact[9 * row + column];
+                assert!((normal - expected).abs() < 1e-12, "{normal} {expected}");
+                let lateral = table.forces().lateral.row(row)[column];
+                assert!((lateral - along).abs() < 1e-12);
+            }
+            // Half a step, where samples are everywhere.
+            for (found, step) in found.largest_shift.into_iter().zip([1e-3, 0.5e-3]) {
+                assert!(
+                    (0.39 * most..=0.5 * most + 1e-12).contains(&(found / step)),
+                    "{found}"
+                );
+            }
+            assert!(found.residual.normal < 1e-12);
+        }
+    }
+
+    // Verifies: MAP-080. Several samples of a pose are averaged; the residual is theirs.
+    #[test]
+    fn samples_of_one_pose_are_averaged() {
+        let twice = [
+            [1e-3, 0.0, 1.0, 0.0],
+            [1e-3, 0.0, 1.5, 0.0],
+            [1e-3, 1e-3, 2.0, 0.5],
+        ];
+        let found = gridded(&twice, [1e-3, 1e-3]).unwrap();
+        let normal = found.table.forces().normal.row(0);
+        assert!((normal[0] - 1.25).abs() < 1e-12 && (normal[1] - 2.0).abs() < 1e-12);
+        assert!((found.residual.normal - (0.125f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert_eq!(found.residual.lateral, 0.0);
+    }
+
+    // Verifies: MAP-080.
+    #[test]
+    fn a_pose_without_a_sample_is_refused() {
+        let mut few = samples();
+        few.remove(4);
+        let error = gridded(&few, [1e-3, 0.5e-3]).unwrap_err().to_string();
+        let expected =
+            "no sample near depth 1.0 mm, lateral 0.0 mm of the grid; choose a coarser grid";
+        assert_eq!(error, expected);
+        assert!(gridded(&few, [2e-3, 1e-3]).is_ok());
+        assert!(gridded(&few, [0.0, 1e-3]).is_err());
+        assert!(gridded(&few, [1e-3, f64::NAN]).is_err());
+    }
+}
