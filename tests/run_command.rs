@@ -75,13 +75,32 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
     here.write("run.toml", config("palpate-out/maps/map-none.json"));
     let message = here.refused("run --config run.toml");
     assert_has(&message, "map-none.json: this map was computed");
+    // What the laboratory's columns hold, said once.
+    let names = csv.replace("normal_force_n", "Cell").replace("0.6", "-600");
+    here.write("lab.csv", names.replace("0.5,", "-500,"));
+    let columns = "columns = { normal = \"-Cell[mN]\" }\n";
+    here.write("run.toml", columns.to_string() + &config("lab.csv"));
+    here.succeed("run --config run.toml --out lab");
+    let [own, lab] = ["palpate-out/report.html", "lab/report.html"].map(|page| here.read(page));
+    let figure = |page: &str, name: &str| {
+        let (_, after) = page
+            .split_once(&format!("Measured forces, “{name}”"))
+            .unwrap();
+        after.split_once("</figure>").unwrap().0.len()
+    };
+    assert_eq!(figure(&own, "gel.csv"), figure(&lab, "lab.csv"));
+    here.write("run.toml", "columns = { normal = 3 }\n");
+    assert_has(
+        &here.refused("run --config run.toml"),
+        "run.toml:1: columns.normal",
+    );
 }
 
 // Verifies: CLI-130, CLI-031.
 #[test]
 fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
     let here = Place::new("demo");
-    let files = "run.toml none.json inclusion.json sweep-without.csv sweep-with.csv sweep-disturbed.csv blank.csv measured.csv";
+    let files = "run.toml none.json inclusion.json sweep-without.csv sweep-with.csv sweep-disturbed.csv blank.csv measured.csv curve.csv";
     let printed = here.succeed("demo first");
     let expected = files.split(' ').map(|file| format!("first/{file}\n"));
     assert_eq!(printed, expected.collect::<String>());

@@ -9,6 +9,7 @@ use toml::Spanned;
 use super::CliError;
 use super::numbers::{List, positions};
 use super::solve::phantom;
+use palpate::csv::Layout;
 use palpate::fem::{Contact, MESH_SIZE};
 use palpate::file::{from_toml, line_of};
 use palpate::phantom::{BUILTIN_NAMES, Phantom};
@@ -27,6 +28,8 @@ pub struct Config {
     pub phantoms: Vec<Spanned<String>>,
     /// Files of measured force maps, shown beside the computed ones.
     pub measured: Vec<PathBuf>,
+    /// Which columns of those in CSV hold what.
+    pub columns: Layout,
     /// Depths of the probe, m.
     #[serde(rename = "depths_mm", deserialize_with = "list")]
     pub depths: List,
@@ -81,6 +84,7 @@ impl Default for Config {
             reference: name(BUILTIN_NAMES[0]),
             phantoms: BUILTIN_NAMES[1..].iter().copied().map(name).collect(),
             measured: Vec::new(),
+            columns: Layout::default(),
             depths: list("0:4:0.5"),
             laterals: list("-10:10:0.5"),
             mesh: MeshConfig::default(),

@@ -1,6 +1,5 @@
 //! How the CSV files of a laboratory are laid out: `--columns` and `--skip-rows`.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use clap::Args;
@@ -24,7 +23,7 @@ pub struct LayoutArguments {
 /// A file with a table of columns.
 #[derive(Deserialize)]
 struct WithColumns {
-    columns: BTreeMap<String, String>,
+    columns: Layout,
 }
 
 impl LayoutArguments {
@@ -32,17 +31,13 @@ impl LayoutArguments {
     ///
     /// Implements: CLI-174.
     pub fn get(&self) -> Result<Layout, Refusal> {
+        let columns = |text: &str, file: &str| -> Result<Layout, Refusal> {
+            let table: WithColumns = from_toml(text, file)?;
+            Ok(table.columns)
+        };
         let mut layout = match self.columns.as_deref() {
             None => Layout::default(),
-            Some(file) if file.ends_with(".toml") => read(Path::new(file), |text, file| {
-                let table: WithColumns = from_toml(text, file)?;
-                let pairs = table.columns.iter();
-                let list: Vec<_> = pairs
-                    .map(|(key, name)| format!("{key}=\"{name}\""))
-                    .collect();
-                let layout = list.join(",").parse();
-                layout.map_err(|refusal: Refusal| refusal.in_file(file))
-            })?,
+            Some(file) if file.ends_with(".toml") => read(Path::new(file), columns)?,
             Some(list) => list.parse()?,
         };
         layout.skipped = self.skip_rows;

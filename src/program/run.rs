@@ -8,13 +8,14 @@ use rayon::prelude::*;
 
 use super::CliError;
 use super::config::Config;
-use super::output::{make_folder, print, write};
+use super::output::{make_folder, note, print, write};
 use super::progress::{bar, tell_large_mesh};
 use super::solve::tell_large_strain;
+use palpate::csv::Layout;
 use palpate::fem::certify::certified_map;
 use palpate::fem::{FemError, Model, Pose};
 use palpate::file::read;
-use palpate::force_map::ForceMap;
+use palpate::force_map::{ForceMap, ForceTable, Measurement, Source};
 use palpate::phantom::{Inclusion, Phantom};
 use palpate::refusal::Refusal;
 use palpate::robust::{GelChanges, GelUncertainty};
@@ -46,7 +47,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     };
     let phantoms = config.read_phantoms()?;
     let measured = config.measured.iter();
-    let measured = measured.map(|path| measured_map(&config.file(path)));
+    let measured = measured.map(|path| measured_map(&config.file(path), &config.columns));
     let measured = measured.collect::<Result<_, _>>()?;
     let study = arguments.study.as_deref().map(StudyResults::read);
     let study = study.transpose()?;
@@ -74,10 +75,17 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     strains.into_iter().collect()
 }
 
-/// Reads a measured map.
+/// Reads a measured map, in CSV in this layout.
 ///
-/// Implements: CLI-031.
-fn measured_map(path: &Path) -> Result<ForceMap, CliError> {
+/// Implements: CLI-031, CLI-174.
+fn measured_map(path: &Path, layout: &Layout) -> Result<ForceMap, CliError> {
+    if path.extension() == Some("csv".as_ref()) {
+        let (text, file) = (super::output::read(path)?, path.display().to_string());
+        let (table, notes) = ForceTable::from_csv_with_notes(&text, &file, layout)?;
+        notes.iter().for_each(|text| note(&file, text));
+        let source = Source::Measured(Measurement::new(&file, ""));
+        return Ok(ForceMap::new(source, None, table)?);
+    }
     let map = ForceMap::read(path)?;
     if map.certificate().is_some() {
         let reason = "this map was computed; 'measured' takes measured maps, as palpate import-map writes them";
