@@ -34,9 +34,9 @@ const UNITS: [&str; 6] = ["mm", "mm-s", "kpa", "us", "n", "s"];
 /// Options whose value is no quantity, has no unit, or is in SI.
 const NO_OTHER_UNIT: &str = "\
     allowed-misses allowed-run bank columns condition confidence-percent config contact criterion cycles \
-    device figure format from gel-uncertainty inclusion journal junit known map max-false-alarm max-force max-miss model \
+    device figure format from gel-uncertainty inclusion journal junit known layer map max-false-alarm max-force max-miss model \
     noise note observer only out percentile phantom pid prior prior-h1 record reference reference-sweep replay \
-    samples seconds seed serial shard simulations skip-rows soak study subject sure trials vectors vid vtu";
+    samples seconds seed serial shard simulations skip-rows soak study subject sure trials uncertainty-out vectors vid vtu";
 
 // Verifies: CON-002.
 #[test]

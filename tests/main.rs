@@ -6,6 +6,7 @@
 mod accuracy;
 mod bank_command;
 mod bank_of_the_paper;
+mod calibrate_command;
 mod command_line;
 mod conventions;
 mod detect_command;

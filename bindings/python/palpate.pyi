@@ -202,6 +202,16 @@ class Bank:
         prior_h1: float = 0.5,
     ) -> dict[str, Any]: ...
 
+def calibrate(
+    depths_mm: ArrayLike,
+    forces_n: ArrayLike,
+    times_s: ArrayLike | None = None,
+    phantom: Phantom | None = None,
+    layers: Sequence[int] = (),
+    lateral_mm: float = 0.0,
+    contact_mm: float | None = None,
+    mesh_mm: float = 0.5,
+) -> dict[str, Any]: ...
 def count_analysis(correct: ArrayLike, trials: int) -> dict[str, Any]: ...
 def analyse_answers(path: _Path | None = None) -> dict[str, Any]: ...
 

@@ -1,5 +1,5 @@
 //! Inclusion probing after Yan, Scott and Fearing (1999): the force on a rigid probe that presses into a gel, the decision whether a hard
-//! inclusion lies in it, and its playback to a hand. This crate is what computes: 13,700 lines of code, on
+//! inclusion lies in it, and its playback to a hand. This crate is what computes: 15,300 lines of code, on
 //! the core, [`palpate_core`], whose modules it exports. Read it in this order:
 //!
 //! | module | content | paper |
@@ -11,6 +11,7 @@
 //! | [`trace`], [`rows`] | a recorded sweep against two of them; the answer, for programs and for people | |
 //! | [`robust`] | the same, whatever gel, motion and sensor do to the forces | §2 |
 //! | [`bank`], [`chart`] | inclusions of any place and size; the charts of both | §5 |
+//! | [`calibration`] | a force–depth curve: contact, moduli, relaxation, noise | |
 //! | [`servo`] | from a table to a force; the kernel is of the core | §4 |
 //! | [`hid`] | the device, the loop, the simulated display; the reports are of the core | §4 |
 //! | [`oracle`] | questions and answers for other implementations | |
@@ -54,6 +55,7 @@
 pub use palpate_core::{detect, force, stats};
 
 pub mod bank;
+pub mod calibration;
 pub mod chart;
 pub mod csv;
 pub mod decimal;

@@ -8,8 +8,8 @@ use palpate::version::LONG_VERSION;
 
 use super::error::CliError;
 use super::{
-    bank, demo, detect, devices, experiment, import, oracle, play, psychophysics, reach, run,
-    solve, study, timing,
+    bank, calibrate, demo, detect, devices, experiment, import, oracle, play, psychophysics, reach,
+    run, solve, study, timing,
 };
 
 /// Inclusion probing after Yan, Scott and Fearing (1999): contact forces by finite elements, detection of an inclusion, haptic playback
@@ -30,6 +30,8 @@ pub(super) enum Command {
     Solve(solve::SolveArguments),
     /// Checks a measured force map in CSV and converts it to JSON
     ImportMap(import::ImportArguments),
+    /// Fits recorded indentations of a gel: where the probe touched it, its moduli, how it relaxes
+    Calibrate(calibrate::CalibrateArguments),
     /// Computes a bank of force maps, one for each candidate inclusion, for 'palpate detect' and 'palpate reach'
     Bank(bank::BankArguments),
     /// Decides whether a recorded sweep shows an inclusion, using two force maps or a bank; a bank also locates it

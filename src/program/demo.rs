@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::CliError;
 use super::output::{make_folder, print, write};
+use palpate::calibration::{Relaxation, relaxed};
 use palpate::fem::{Contact, MESH_SIZE, Model};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable};
@@ -35,6 +36,15 @@ const SAMPLES: u64 = 401;
 const NOISE: f64 = 0.1;
 /// Noise of a measured map, N.
 const MAP_NOISE: f64 = 0.01;
+/// An indentation: how far the probe goes from above the gel, where it touches it, m; its speed, m/s; the time between samples and how
+/// long it stays, s; how much stiffer than the paper's the gel is; noise of a sample, N.
+const WAY: f64 = 4.6e-3;
+const TOUCHED: f64 = 0.8e-3;
+const SPEED: f64 = 2e-3;
+const PERIOD: f64 = 0.025;
+const HELD: f64 = 5.0;
+const STIFFER: f64 = 1.2;
+const CURVE_NOISE: f64 = 0.005;
 /// Seed of all noise.
 const SEED: u64 = 1999;
 
@@ -74,6 +84,7 @@ pub fn demo(arguments: &DemoArguments) -> Result<(), CliError> {
         ("sweep-disturbed.csv", sweep(with, DISTURBED, 3)),
         ("blank.csv", sweep(without, BLANK, 4)),
         ("measured.csv", measured(inclusion.table())),
+        ("curve.csv", curve()?),
     ];
     for (name, text) in files {
         write(&folder.join(name), &text)?;
@@ -129,4 +140,34 @@ fn measured(map: &ForceTable) -> String {
         let _ = writeln!(text, "{depth:.1},{x:.1},{normal:.4},{along:.4}");
     }
     text
+}
+
+/// An indentation of a stiffer gel that relaxes, (1 + t/1 s)^(−0.135).
+fn curve() -> Result<String, CliError> {
+    let generator = Generator::new(SEED, 6);
+    let samples = ((WAY / SPEED + HELD) / PERIOD) as u32;
+    let times: Vec<f64> = (0..samples).map(|k| PERIOD * f64::from(k)).collect();
+    let depths: Vec<f64> = times.iter().map(|time| WAY.min(SPEED * time)).collect();
+    let phantom = Phantom::builtin("none")?;
+    let model = Model::new(&phantom, MESH_SIZE, Contact::default());
+    let model = model.map_err(CliError::fem("none"))?;
+    let mut below: Vec<f64> = depths.iter().map(|depth| depth - TOUCHED).collect();
+    below.retain(|depth| *depth > 0.0);
+    below.dedup();
+    let map = model.map(&below, &[0.0], &|_| ());
+    let map = map.map_err(CliError::fem("none"))?;
+    let force = |depth: &f64| {
+        let solved = map.table().row(depth - TOUCHED);
+        solved.map_or(0.0, |forces| STIFFER * forces.normal[0])
+    };
+    let elastic: Vec<f64> = depths.iter().map(force).collect();
+    let relaxation = Relaxation::PowerLaw.terms(&[0.0, -2.0]);
+    let forces = relaxed(&relaxation, &times, &elastic);
+    let mut text = String::from("time_s,depth_mm,normal_force_n\n");
+    for (sample, (time, depth)) in (0..).zip(times.iter().zip(&depths)) {
+        let force = forces[sample as usize] + 0.12 - 0.002 * time;
+        let force = force + CURVE_NOISE * generator.normal(0, sample);
+        let _ = writeln!(text, "{time:.3},{:.3},{force:.4}", 1e3 * depth);
+    }
+    Ok(text)
 }

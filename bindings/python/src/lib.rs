@@ -7,6 +7,7 @@
 //! | `detector.rs`, `decision.rs` | the detector: records, and what follows from θ |
 //! | `batch.rs` | θ of many records |
 //! | `bank.rs` | banks of inclusions |
+//! | `calibration.rs` | force–depth curves |
 //! | `psychophysics.rs` | counts of right answers |
 //! | `servo.rs` | the servo kernel |
 //! | `oracle.rs` | every operation of the oracle by name |
@@ -15,6 +16,7 @@
 
 mod bank;
 mod batch;
+mod calibration;
 mod classes;
 mod convert;
 mod decision;
@@ -36,6 +38,8 @@ mod palpate {
 
     #[pymodule_export]
     use super::bank::Bank;
+    #[pymodule_export]
+    use super::calibration::calibrate;
     #[pymodule_export]
     use super::classes::{ForceMap, Phantom};
     #[pymodule_export]

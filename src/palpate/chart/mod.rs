@@ -1,14 +1,16 @@
-//! Line charts as SVG, and those that `palpate detect` and `palpate reach` draw.
+//! Line charts as SVG, and those that `palpate detect`, `calibrate` and `reach` draw.
 //!
 //! | file | content |
 //! |---|---|
 //! | `bank.rs`, `reach.rs` | where an inclusion lies by a bank, and how deep one can be found |
 //! | `explanation.rs` | a record beside what explains it |
+//! | `calibration.rs` | a force–depth curve beside its fit |
 //! | `panel.rs` | what a chart is made of |
 //! | `lines.rs` | how panels are drawn |
 //! | `key.rs`, `style.rs` | the key above a plot; sizes and colours |
 
 mod bank;
+mod calibration;
 mod explanation;
 mod key;
 mod lines;
@@ -17,6 +19,7 @@ mod reach;
 pub mod style;
 
 pub use bank::place_figure;
+pub use calibration::calibration_figure;
 pub use explanation::{answer_in_words, explanation_figure, record_panel};
 pub use lines::{chart, round_range};
 pub use panel::{Cells, Line, Panel, PanelKind};

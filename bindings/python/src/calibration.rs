@@ -1,0 +1,59 @@
+//! Force–depth curves.
+
+use palpate::calibration::{self, CalibrationQuestion, Curve, Indentation};
+use pyo3::prelude::*;
+
+use crate::classes::Phantom;
+use crate::convert::{Any, list, python, refused, si};
+
+/// What a force-depth curve says of a gel: the answer of palpate calibrate for one curve, with the keys of its JSON, in SI, in a
+/// dictionary; and phantom, the Phantom with the moduli that were found, or None.
+///
+/// depths_mm: shape (n,), in mm, growing into the gel from any zero; forces_n: shape (n,), in N; times_s: shape (n,), in s, or None.
+/// phantom: the gel and the probe, or None for an empirical law. layers: numbers of the layers whose moduli are found, or none for one factor of
+/// all moduli. contact_mm: where the probe touches the gel, or None to estimate it.
+// Implements: PYT-031.
+#[pyfunction]
+#[pyo3(signature = (depths_mm, forces_n, times_s=None, phantom=None, layers=vec![], lateral_mm=0.0, contact_mm=None, mesh_mm=0.5),
+    text_signature = "(depths_mm, forces_n, times_s=None, phantom=None, layers=(), lateral_mm=0.0, contact_mm=None, mesh_mm=0.5)")]
+#[allow(clippy::too_many_arguments, reason = "keywords in Python")]
+pub fn calibrate<'py>(
+    py: Python<'py>,
+    depths_mm: Any<'_, 'py>,
+    forces_n: Any<'_, 'py>,
+    times_s: Option<Any<'_, 'py>>,
+    phantom: Option<&Phantom>,
+    layers: Vec<usize>,
+    lateral_mm: f64,
+    contact_mm: Option<f64>,
+    mesh_mm: f64,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (depths, forces) = (
+        list("depths_mm", depths_mm, -3)?,
+        list("forces_n", forces_n, 0)?,
+    );
+    let times = times_s.map(|times| list("times_s", times, 0)).transpose()?;
+    let curve = Curve::new("curve", times.as_deref(), &depths, &forces).map_err(refused)?;
+    let indentation = Indentation {
+        layers: &layers,
+        lateral: si("lateral_mm", lateral_mm, -3)?,
+        mesh_size: si("mesh_mm", mesh_mm, -3)?,
+    };
+    let contact = contact_mm
+        .map(|contact| si("contact_mm", contact, -3))
+        .transpose()?;
+    let question = CalibrationQuestion {
+        gel: phantom.map(|phantom| (&phantom.0, indentation)),
+        contact,
+    };
+    let found = py
+        .detach(|| calibration::calibrate(&curve, question))
+        .map_err(refused)?;
+    let told = python(py, &found.rows(&layers).map_err(refused)?)?;
+    let moduli = found.moduli(&layers).map_err(refused)?;
+    let own = phantom.filter(|_| !moduli.is_empty());
+    let calibrated = own.map(|own| calibration::calibrated(&own.0, &layers, &moduli));
+    let calibrated = calibrated.transpose().map_err(refused)?;
+    told.set_item("phantom", calibrated.map(Phantom))?;
+    Ok(told)
+}

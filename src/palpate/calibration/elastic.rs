@@ -1,0 +1,155 @@
+//! The force on the probe over its depth, of a gel that does not relax.
+
+use crate::fem::{Contact, FemError, Model};
+use crate::force_map::ForceMap;
+use crate::phantom::Phantom;
+
+/// Depths of the table of a gel, and the first over the last.
+const DEPTHS: i32 = 32;
+const FIRST_DEPTH: f64 = 0.005;
+/// The share by which the modulus of a layer is changed, to see what it does to the forces.
+const CHANGE: f64 = 0.05;
+
+/// The forces of a gel over depth, which change with its moduli.
+#[derive(Debug, Clone)]
+pub struct Gel {
+    /// The phantom whose forces they are.
+    pub phantom: Phantom,
+    /// The forces, for one lateral position.
+    pub map: ForceMap,
+    /// ln of each depth (mm) and of the force there (N).
+    logarithms: Vec<[f64; 2]>,
+    /// d ln F/d ln E at each depth, for each modulus.
+    exponents: Vec<Vec<f64>>,
+}
+
+/// What a gel is asked.
+#[derive(Debug, Clone, Copy)]
+pub struct Indentation<'a> {
+    /// The layers whose moduli are not known, each on its own; empty for one factor of all moduli.
+    pub layers: &'a [usize],
+    /// Where the probe goes down, m.
+    pub lateral: f64,
+    /// The mesh size, m.
+    pub mesh_size: f64,
+}
+
+impl Gel {
+    /// The forces of `phantom` down to a depth, m.
+    ///
+    /// # Errors
+    /// As [`Model::map`].
+    ///
+    /// Implements: CAL-011.
+    pub(super) fn new(
+        phantom: &Phantom,
+        asked: Indentation<'_>,
+        deepest: f64,
+    ) -> Result<Gel, FemError> {
+        let ratio = libm::log(FIRST_DEPTH) / f64::from(DEPTHS - 1);
+        let depth = |k: i32| deepest * libm::exp(ratio * f64::from(k));
+        let depths: Vec<f64> = (0..DEPTHS).rev().map(depth).collect();
+        let map = |phantom: &Phantom| {
+            let model = Model::new(phantom, asked.mesh_size, Contact::default())?;
+            model.map(&depths, &[asked.lateral], &|_| ())
+        };
+        let logarithms = |map: &ForceMap| -> Vec<f64> {
+            let forces = map.table().forces().normal.values().iter();
+            forces.map(|force| libm::log(*force)).collect()
+        };
+        let own = map(phantom)?;
+        let mut exponents = Vec::new();
+        for &layer in asked.layers {
+            let changed = |factor: f64| -> Result<Vec<f64>, FemError> {
+                Ok(logarithms(&map(&stiffened(phantom, &[layer], &[factor])?)?))
+            };
+            let (less, more) = (changed(1.0 - CHANGE)?, changed(1.0 + CHANGE)?);
+            let range = libm::log((1.0 + CHANGE) / (1.0 - CHANGE));
+            let pairs = less.iter().zip(more);
+            exponents.push(pairs.map(|(less, more)| (more - less) / range).collect());
+        }
+        if asked.layers.is_empty() {
+            // All moduli and the forces have one factor.
+            exponents.push(vec![1.0; depths.len()]);
+        }
+        let pairs = depths.iter().zip(logarithms(&own));
+        let pairs = pairs.map(|(depth, force)| [libm::log(1e3 * depth), force]);
+        Ok(Gel {
+            phantom: phantom.clone(),
+            logarithms: pairs.collect(),
+            map: own,
+            exponents,
+        })
+    }
+
+    /// The force (N) at a depth (mm) where each modulus is e^`changes` times that of the phantom; between the depths of the table, and
+    /// beyond them, ln F is linear in ln d.
+    fn force(&self, depth: f64, changes: &[f64]) -> f64 {
+        let x = libm::log(depth);
+        let above = self.logarithms.partition_point(|[depth, _]| *depth < x);
+        let at = above.clamp(1, self.logarithms.len() - 1);
+        let [[from, low], [to, high]] = [self.logarithms[at - 1], self.logarithms[at]];
+        let share = (x - from) / (to - from);
+        // A gel at its surface is that at the least depth of the table.
+        let own = share.clamp(0.0, 1.0);
+        let pairs = self.exponents.iter().zip(changes);
+        let changed = pairs.map(|(exponents, change)| {
+            change * (exponents[at - 1] + own * (exponents[at] - exponents[at - 1]))
+        });
+        libm::exp(low + share * (high - low) + changed.sum::<f64>())
+    }
+}
+
+/// `phantom` with the moduli of some layers multiplied by factors; without a layer, all moduli by the first factor.
+///
+/// # Errors
+/// A modulus that no phantom has.
+pub(super) fn stiffened(
+    phantom: &Phantom,
+    layers: &[usize],
+    factors: &[f64],
+) -> Result<Phantom, crate::refusal::Refusal> {
+    phantom.changed(|parts| {
+        for (layer, factor) in layers.iter().zip(factors) {
+            parts.layers[*layer].material.youngs_modulus *= factor;
+        }
+        if layers.is_empty() {
+            let layers = parts.layers.iter_mut().map(|of| &mut of.material);
+            let all = layers.chain(parts.inclusions.iter_mut().map(|of| &mut of.material));
+            all.for_each(|material| material.youngs_modulus *= factors[0]);
+        }
+    })
+}
+
+/// The law of the force over depth.
+#[derive(Debug, Clone)]
+pub enum Elastic {
+    /// F = k dᵖ e^(q d), of any gel and probe.
+    Empirical,
+    /// That of a phantom.
+    Gel(Box<Gel>),
+}
+
+impl Elastic {
+    /// How many parameters the law has: ln k, ln p and q, or the ln of a factor for each modulus.
+    pub(super) fn parameters(&self) -> usize {
+        match self {
+            Elastic::Empirical => 3,
+            Elastic::Gel(gel) => gel.exponents.len(),
+        }
+    }
+
+    /// The force, N, at a depth, mm.
+    ///
+    /// Implements: CAL-010.
+    pub(super) fn force(&self, depth: f64, parameters: &[f64]) -> f64 {
+        match self {
+            _ if depth <= 0.0 => 0.0,
+            Elastic::Empirical => {
+                let [stiffness, exponent, growth] = [0, 1, 2].map(|at| parameters[at]);
+                libm::exp(stiffness + libm::exp(exponent) * libm::log(depth) + growth * depth)
+            }
+            Elastic::Gel(gel) => gel.force(depth, parameters),
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! A force–depth curve beside its fit.
+
+use super::chart;
+use super::explanation::{residual_panel, roomy};
+use super::panel::{Line, Panel};
+use super::style::{BLUE, GREY, INK, VERMILION};
+use crate::calibration::{Calibration, Interval};
+use crate::refusal::Refusal;
+use crate::text::trimmed;
+
+/// Curves with their fits, the residuals below, over time if there are times, else over depth, as an SVG document. A curve that cannot be
+/// judged says why.
+///
+/// # Errors
+/// If drawing fails.
+///
+/// Implements: CAL-033.
+pub fn calibration_figure(calibrations: &[Calibration<'_>]) -> Result<String, Refusal> {
+    let mut panels = Vec::new();
+    for calibration in calibrations {
+        panels.extend(panels_of(calibration)?);
+    }
+    let alt: Vec<_> = panels
+        .iter()
+        .flat_map(|panel| panel.caption.clone())
+        .collect();
+    let alt = alt.join(" ");
+    chart(
+        &panels,
+        ["calibration", "Force–depth curves and their fits", &alt],
+    )
+}
+
+fn panels_of(of: &Calibration<'_>) -> Result<Vec<Panel>, Refusal> {
+    let curve = of.curve;
+    let (x_name, abscissa): (_, Vec<f64>) = match curve.times() {
+        Some(times) => ("Time t (s)", times.to_vec()),
+        None => (
+            "Depth on the curve (mm)",
+            curve.depths().iter().map(|d| 1e3 * d).collect(),
+        ),
+    };
+    let points = |forces: &[f64]| {
+        abscissa
+            .iter()
+            .copied()
+            .zip(forces.iter().copied())
+            .collect()
+    };
+    let x = roomy(abscissa.iter().copied());
+    let [expected, residuals] = of.expected().unwrap_or_default();
+    let y = roomy(curve.forces().iter().chain(expected).copied());
+    let dots = |colour, points| Line::new(colour, points).wide(0.0).dotted(2);
+    let mut lines = vec![dots(GREY, points(curve.forces())).named("curve")];
+    let mut panel = Panel::new("Normal force (N)", [x, y], 200, Vec::new());
+    let mut caption = vec![format!("{}.", curve.file())];
+    if let Some(cause) = of.cause {
+        caption.push(format!("It cannot be judged: {}.", cause.in_words()));
+    }
+    if let Some(contact) = of.contact()? {
+        let Interval { estimate, ends } = contact.map(|depth| 1e3 * depth);
+        let [estimate, low, high] = [estimate, ends[0], ends[1]].map(|of| trimmed(of, 3));
+        caption.push(format!(
+            "Contact at {estimate} mm (95 %: {low} to {high} mm)."
+        ));
+        let at = contact.estimate;
+        let place = match curve.times() {
+            Some(times) => {
+                let touched = curve.depths().iter().position(|depth| *depth >= at);
+                touched.map(|sample| times[sample])
+            }
+            None => Some(1e3 * at),
+        };
+        if let Some(place) = place {
+            let line = Line::new(INK, vec![(place, y[0]), (place, y[1])]).wide(1.0);
+            lines.push(line.dashed(true).named("contact"));
+        }
+    }
+    if !expected.is_empty() {
+        let colour = if of.cause.is_none() { BLUE } else { VERMILION };
+        lines.push(Line::new(colour, points(expected)).named("fit"));
+    }
+    panel.lines = lines;
+    panel.caption = caption;
+    if expected.is_empty() {
+        panel.x_name = x_name.into();
+        return Ok(vec![panel]);
+    }
+    let mut left = residual_panel(
+        "What is left of the force (N)".into(),
+        x,
+        of.noise_of_steps(),
+    );
+    left.lines.push(dots(BLUE, points(residuals)));
+    left.y = roomy(residuals.iter().copied().chain(left.y));
+    left.x_name = x_name.into();
+    Ok(vec![panel, left])
+}

@@ -1,0 +1,197 @@
+//! `palpate calibrate`: what force–depth curves say of a gel.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+
+use super::error::refuse;
+use super::layout::LayoutArguments;
+use super::numbers::{length, position};
+use super::output::{Envelope, note, write};
+use super::solve::{phantom, tell_large_strain};
+use super::{CliError, Format};
+use palpate::calibration::{
+    Calibration, CalibrationQuestion, Curve, Elastic, Indentation, calibrate as fitted, calibrated,
+    modulus_row, pooled_moduli,
+};
+use palpate::chart::calibration_figure;
+use palpate::fem::MESH_SIZE;
+use palpate::phantom::Phantom;
+use palpate::rows::Rows;
+
+/// Arguments of `palpate calibrate`.
+#[derive(Debug, Args)]
+pub struct CalibrateArguments {
+    /// Recorded indentations: CSV files with depth_mm, normal_force_n and, to see how the force relaxes, time_s; each from above the gel
+    #[arg(value_name = "CURVE.csv", required = true)]
+    curves: Vec<PathBuf>,
+    /// The gel and the probe (built-in phantom or file), whose moduli are found; without it an empirical law is fitted
+    #[arg(long, value_name = "NAME|FILE")]
+    phantom: Option<String>,
+    /// A layer whose modulus is found, by its name; may be given twice [default: one factor of all moduli]
+    #[arg(long = "layer", value_name = "LAYER", requires = "phantom")]
+    layers: Vec<String>,
+    /// Lateral position of the curves in mm, or of each of several
+    #[arg(long = "lateral-mm", value_name = "X", value_parser = position, value_delimiter = ',', allow_hyphen_values = true, default_value = "0", requires = "phantom")]
+    laterals: Vec<f64>,
+    /// Where the probe touches the gel, in mm on the depths of the curve, or auto to estimate it
+    #[arg(
+        long = "contact",
+        value_name = "auto|MM",
+        default_value = "auto",
+        allow_hyphen_values = true
+    )]
+    contact: String,
+    /// Mesh size in mm [default: 0.5]
+    #[arg(long = "mesh-mm", value_parser = length, value_name = "H", requires = "phantom")]
+    mesh_size: Option<f64>,
+    #[command(flatten)]
+    layout: LayoutArguments,
+    /// Writes the phantom with the moduli that were found, for other commands
+    #[arg(long, value_name = "FILE.toml", requires = "phantom")]
+    out: Option<PathBuf>,
+    /// Writes how well the depth is known, for 'palpate detect --gel-uncertainty'
+    #[arg(long, value_name = "FILE.toml")]
+    uncertainty_out: Option<PathBuf>,
+    /// Writes a figure as SVG: each curve, its fit, and what is left
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
+    /// Output format
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-176, CLI-017, CLI-003.
+pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), CliError> {
+    let phantom = arguments.phantom.as_deref().map(phantom).transpose()?;
+    let layers = layers(arguments, phantom.as_ref())?;
+    let contact = contact(&arguments.contact)?;
+    if contact.is_some() && arguments.uncertainty_out.is_some() {
+        refuse!("--uncertainty-out needs --contact auto");
+    }
+    let layout = arguments.layout.get()?;
+    let curves = arguments
+        .curves
+        .iter()
+        .map(|path| Curve::read(path, &layout));
+    let curves = curves.collect::<Result<Vec<_>, _>>()?;
+    let laterals = match (&arguments.laterals[..], curves.len()) {
+        ([lateral], _) => vec![*lateral; curves.len()],
+        (laterals, count) if laterals.len() == count => laterals.to_vec(),
+        (laterals, count) => refuse!(
+            "--lateral-mm has {} positions for {count} curves; give one, or one for each",
+            laterals.len()
+        ),
+    };
+    let mut found = Vec::new();
+    for (curve, lateral) in curves.iter().zip(laterals) {
+        curve
+            .notes()
+            .iter()
+            .for_each(|text| note(curve.file(), text));
+        let indentation = Indentation {
+            layers: &layers,
+            lateral,
+            mesh_size: arguments.mesh_size.unwrap_or(MESH_SIZE),
+        };
+        let gel = phantom.as_ref().map(|phantom| (phantom, indentation));
+        let name = phantom.as_ref().map_or("", Phantom::name);
+        let calibration = fitted(curve, CalibrationQuestion { gel, contact });
+        let calibration = calibration.map_err(CliError::fem(name))?;
+        if let Elastic::Gel(gel) = &calibration.elastic {
+            tell_large_strain(&gel.map, name)?;
+        }
+        found.push(calibration);
+    }
+    if let Some(path) = &arguments.figure {
+        write(path, &calibration_figure(&found)?)?;
+    }
+    tell(arguments, &found, (phantom.as_ref(), &layers))
+}
+
+/// The numbers of the layers that are named.
+fn layers(
+    arguments: &CalibrateArguments,
+    phantom: Option<&Phantom>,
+) -> Result<Vec<usize>, CliError> {
+    let all = phantom.map_or(&[][..], Phantom::layers);
+    let mut numbers = Vec::new();
+    for name in &arguments.layers {
+        let number = all.iter().position(|layer| layer.name == *name);
+        match number.filter(|number| !numbers.contains(number)) {
+            Some(number) => numbers.push(number),
+            None => {
+                let names: Vec<_> = all.iter().map(|layer| &*layer.name).collect();
+                refuse!("--layer {name:?}: give each once, of {}", names.join(", "));
+            }
+        }
+    }
+    Ok(numbers)
+}
+
+fn contact(text: &str) -> Result<Option<f64>, CliError> {
+    match text {
+        "auto" => Ok(None),
+        depth => match position(depth) {
+            Ok(depth) => Ok(Some(depth)),
+            Err(error) => refuse!("--contact {depth:?}: {error}, or auto"),
+        },
+    }
+}
+
+/// Prints the answers; writes what was found if all curves could be judged, else fails.
+///
+/// Implements: CLI-176.
+fn tell(
+    arguments: &CalibrateArguments,
+    found: &[Calibration<'_>],
+    (phantom, layers): (Option<&Phantom>, &[usize]),
+) -> Result<(), CliError> {
+    let rows = found
+        .iter()
+        .map(|of| of.rows(layers))
+        .collect::<Result<Vec<_>, _>>()?;
+    let moduli = pooled_moduli(found, layers)?;
+    let mut table: Vec<String> = Vec::new();
+    for (of, rows) in found.iter().zip(&rows) {
+        if found.len() > 1 {
+            table.push(format!("{}\n", of.curve.file()));
+        }
+        table.push(rows.table());
+    }
+    let mut answer = Rows::default();
+    answer.value("phantom", json!(arguments.phantom));
+    answer.value("curves", json!(rows));
+    let bad = found
+        .iter()
+        .find_map(|of| Some((of.curve.file(), of.cause?)));
+    if bad.is_none() && found.len() > 1 && !moduli.is_empty() {
+        let mut all = Rows::default();
+        modulus_row(&mut all, "all curves: Young's modulus, kPa", &moduli);
+        table.push(all.table());
+        answer.append(all);
+    }
+    let answer = Envelope::new("palpate-calibration", 1, answer);
+    arguments.format.print(&answer, || table.concat())?;
+    if let Some((file, cause)) = bad {
+        let message = format!("{file}: cannot be judged: {}", cause.in_words());
+        return Err(CliError::Unjudged(message));
+    }
+    if let (Some(path), Some(phantom)) = (&arguments.out, phantom) {
+        write(path, &calibrated(phantom, layers, &moduli)?.to_toml())?;
+    }
+    if let Some(path) = &arguments.uncertainty_out {
+        let percents = found.iter().map(Calibration::depth_percent);
+        // All contacts were estimated.
+        let percents = percents.collect::<Result<Vec<_>, _>>()?;
+        let percent = percents.into_iter().flatten().fold(0.0, f64::max);
+        let text = format!(
+            "# From the contact that palpate calibrate estimated.\ndepth_percent = {percent:.3}\n"
+        );
+        write(path, &text)?;
+    }
+    Ok(())
+}
