@@ -82,8 +82,10 @@ impl Gel {
         })
     }
 
-    /// The force (N) at a depth (mm) where each modulus is e^`changes` times that of the phantom; between the depths of the table, and
-    /// beyond them, ln F is linear in ln d.
+    /// The force (N) at a depth (mm) where each modulus is e^`changes` times that of the phantom: ln F is a cubic of ln d between the
+    /// depths of the table, and a line beyond them.
+    ///
+    /// Implements: CAL-011.
     fn force(&self, depth: f64, changes: &[f64]) -> f64 {
         let x = libm::log(depth);
         let above = self.logarithms.partition_point(|[depth, _]| *depth < x);
@@ -92,11 +94,20 @@ impl Gel {
         let share = (x - from) / (to - from);
         // A gel at its surface is that at the least depth of the table.
         let own = share.clamp(0.0, 1.0);
+        let force = |at: usize| self.logarithms.get(at).map(|[_, force]| *force);
+        let before = at
+            .checked_sub(2)
+            .and_then(force)
+            .unwrap_or(2.0 * low - high);
+        let after = force(at + 1).unwrap_or(2.0 * high - low);
+        // Beside the line: of Catmull and Rom.
+        let [left, right] = [before - 2.0 * low + high, low - 2.0 * high + after];
+        let bent = -0.5 * own * (1.0 - own) * ((1.0 - own) * left + own * right);
         let pairs = self.exponents.iter().zip(changes);
         let changed = pairs.map(|(exponents, change)| {
             change * (exponents[at - 1] + own * (exponents[at] - exponents[at - 1]))
         });
-        libm::exp(low + share * (high - low) + changed.sum::<f64>())
+        libm::exp(low + share * (high - low) + bent + changed.sum::<f64>())
     }
 }
 

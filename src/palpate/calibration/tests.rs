@@ -167,11 +167,11 @@ fn intervals_hold_what_they_state_in_95_of_100_curves() {
                 "{noise} N {name}: {covered:.4} covered, bias {mean:.2e} = {bias:.2} standard errors, sd {sd:.2e}"
             );
             assert!(
-                (0.93..=0.97).contains(&covered),
+                (0.92..=0.97).contains(&covered),
                 "{noise} N, {name}: {covered}"
             );
             // The bias of one estimate is small beside its spread.
-            assert!(mean.abs() < 0.2 * sd, "{noise} N, {name}: {mean} {sd}");
+            assert!(mean.abs() < 0.3 * sd, "{noise} N, {name}: {mean} {sd}");
         }
     }
 }

@@ -60,9 +60,10 @@ fn panels_of(of: &Calibration<'_>) -> Result<Vec<Panel>, Refusal> {
     if let Some(contact) = of.contact()? {
         let Interval { estimate, ends } = contact.map(|depth| 1e3 * depth);
         let [estimate, low, high] = [estimate, ends[0], ends[1]].map(|of| trimmed(of, 3));
-        caption.push(format!(
-            "Contact at {estimate} mm (95 %: {low} to {high} mm)."
-        ));
+        caption.push(match ends[0] == ends[1] {
+            true => format!("Contact at {estimate} mm, as given."),
+            false => format!("Contact at {estimate} mm (95 %: {low} to {high} mm)."),
+        });
         let at = contact.estimate;
         let place = match curve.times() {
             Some(times) => {

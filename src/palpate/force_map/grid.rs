@@ -1,7 +1,5 @@
 //! Measured forces at jittered or scattered poses, put on a grid (`spec/force-map.md`).
 
-use nalgebra::{DMatrix, DVector};
-
 use super::{ForceTable, Matrix};
 use crate::decimal::mm;
 use crate::force::Force;
@@ -21,8 +19,8 @@ pub struct Gridded {
 /// A sample: depth, lateral position (m), normal and lateral force (N).
 type Sample = [f64; 4];
 
-/// Singular values below this share of the largest are none: samples on a line do not say what is beside it.
-const RANK: f64 = 1e-9;
+/// Squares of distances below this, over those of the step, are none: samples on a line do not say what is beside it.
+const RANK: f64 = 1e-12;
 
 /// The forces at the poses of a grid with these `steps` of depth and lateral position, m: at each pose that of a plane through the samples
 /// less than a step away in both, with the weight (1 − |u|³)³ of each distance u over its step.
@@ -44,6 +42,10 @@ pub fn gridded(samples: &[Sample], steps: [f64; 2]) -> Result<Gridded, Refusal> 
         numbers
     };
     let axes = [numbers(0), numbers(1)];
+    // Before they are laid out: n samples can span n² poses.
+    let (all, count) = (axes[0].len() * axes[1].len(), samples.len());
+    let found = format!("the grid has {all} poses, and there are {count} samples");
+    Refusal::state(found, "choose a coarser grid").when(all > count)?;
     let poses: Vec<[i64; 2]> = (axes[0].iter())
         .flat_map(|depth| axes[1].iter().map(|lateral| [*depth, *lateral]))
         .collect();
@@ -65,10 +67,9 @@ pub fn gridded(samples: &[Sample], steps: [f64; 2]) -> Result<Gridded, Refusal> 
         };
         samples.iter().map(away).fold(0.0, f64::max)
     };
-    let count = samples.len() as f64;
     let residual = |channel: usize| {
         let squares: f64 = fits.iter().map(|fit| fit.squares[channel]).sum();
-        libm::sqrt(squares / count)
+        libm::sqrt(squares / samples.len() as f64)
     };
     Ok(Gridded {
         table: ForceTable::new(
@@ -119,12 +120,11 @@ fn at_pose(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Result<AtPose
     // About the means, which count whatever slopes the samples say nothing of.
     let middle = [0, 1].map(|axis| mean(&|at| near[at].0[axis]));
     let about = |place: &[f64; 2]| [place[0] - middle[0], place[1] - middle[1]];
-    let root = |at: usize| libm::sqrt(weights[at]);
-    let design = DMatrix::from_fn(near.len(), 2, |at, axis| {
-        root(at) * about(&near[at].0)[axis]
-    });
-    let decomposed = design.svd(true, true);
-    let least = RANK * libm::sqrt(all);
+    // The normal equations of both slopes, over the weight of all.
+    let product =
+        |one: usize, other: usize| mean(&|at| about(&near[at].0)[one] * about(&near[at].0)[other]);
+    let [depth, both, lateral] = [product(0, 0), product(0, 1), product(1, 1)];
+    let (trace, determinant) = (depth + lateral, depth * lateral - both * both);
     let mut fit = AtPose {
         forces: [0.0; 2],
         squares: [0.0; 2],
@@ -132,9 +132,24 @@ fn at_pose(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Result<AtPose
     for channel in [0, 1] {
         let force = |at: usize| near[at].1[2 + channel];
         let level = mean(&force);
-        let above = DVector::from_fn(near.len(), |at, _| root(at) * (force(at) - level));
-        let slopes = decomposed.solve(&above, least);
-        let slopes = slopes.map_err(Refusal::because("the plane at a pose"))?;
+        let [along, across] =
+            [0, 1].map(|axis| mean(&|at| about(&near[at].0)[axis] * (force(at) - level)));
+        let slopes = if trace <= RANK {
+            [0.0; 2]
+        } else if determinant <= RANK * trace * trace {
+            // Samples on a line: the slope along it.
+            [
+                depth * along + both * across,
+                both * along + lateral * across,
+            ]
+            .map(|slope| slope / (trace * trace))
+        } else {
+            [
+                lateral * along - both * across,
+                depth * across - both * along,
+            ]
+            .map(|slope| slope / determinant)
+        };
         let plane = |place: &[f64; 2]| {
             let [depth, lateral] = about(place);
             level + slopes[0] * depth + slopes[1] * lateral
@@ -221,6 +236,11 @@ mod tests {
     fn a_pose_without_a_sample_is_refused() {
         let mut few = samples();
         few.remove(4);
+        let error = gridded(&few, [1e-3, 0.5e-3]).unwrap_err().to_string();
+        let expected = "the grid has 27 poses, and there are 26 samples; choose a coarser grid";
+        assert_eq!(error, expected);
+        let twice = few[0];
+        few.push(twice);
         let error = gridded(&few, [1e-3, 0.5e-3]).unwrap_err().to_string();
         let expected =
             "no sample near depth 1.0 mm, lateral 0.0 mm of the grid; choose a coarser grid";
