@@ -71,7 +71,7 @@ pub enum Source {
 
 /// Where measured forces come from.
 ///
-/// Implements: MAP-020, MAP-074.
+/// Implements: MAP-020, MAP-074, MAP-082.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Measurement {
