@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
+use numpy::PyUntypedArrayMethods;
 use palpate::bank::{self, BankPlan, BankSearch, Location};
 use palpate::detect::Decision;
 use palpate::fem::FemError;
+use palpate::force::Force;
 use palpate::force_map::ForceMap as Map;
 use palpate::refusal::Refusal;
 use palpate::robust::{GelChanges, GelUncertainty, Part, RobustQuestion, RobustSweep};
@@ -18,7 +20,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use crate::classes::{ForceMap, Phantom};
-use crate::convert::{Any, Records, array, in_unit, list, pair, python, refused, si, tell};
+use crate::convert::{Any, Records, array, floats, in_unit, list, pair, python, refused, si, tell};
 
 /// Names of the parameters of an inclusion, and the power of ten from SI to their units.
 const NAMES: [(&str, i32); 4] = [
@@ -82,9 +84,14 @@ fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
     Ok(maps)
 }
 
-/// The record of forces at positions.
+/// The record of forces, or of normal forces alone, at positions.
 fn record(positions_mm: Any, forces_n: Any) -> PyResult<Record> {
     let positions = list("positions_mm", positions_mm, -3)?;
+    let values = floats("forces_n", forces_n)?;
+    if let [_] = values.shape() {
+        let forces = Force::new(&[][..], values.as_slice()?);
+        return Record::new("record", &positions, forces).map_err(refused);
+    }
     let forces = Records::one("forces_n", forces_n)?;
     Record::new("record", &positions, forces.force()?).map_err(refused)
 }
@@ -245,8 +252,8 @@ impl Bank {
     /// Is an inclusion of the bank in a record, whatever gel, motion and sensor did to it? The answer of palpate detect --bank with the keys
     /// of its JSON, in SI, in a dictionary, and inclusion (True, False, or None where the record cannot be judged, for the causes).
     ///
-    /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N. noise_sd_n: of a sample in N, one for both
-    /// channels or (lateral, normal), or None if the record tells. known: what does not disturb the sweep, of smooth, gel, support,
+    /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N, or (n,), normal alone. noise_sd_n: of a sample in
+    /// N, one for both channels or (lateral, normal), or None if the record tells. known: what does not disturb the sweep, of smooth, gel, support,
     /// stage, surface, tilt, friction, relaxation and walk. zeroed: whether the sensor was set to zero on the gel. sure: the posterior from
     /// which there is an inclusion. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion. The first call
     /// computes the gels beside that of the bank.

@@ -55,7 +55,7 @@ def test_an_inclusion_is_found_where_it_is(bank):
     assert nothing["inclusion"] is False and nothing["posterior_h1"] < 0.01
     # Another unit: no decision, and the cause.
     wrong = bank.locate(x, 1000 * forces, noise_sd_n=0.05, white=True)
-    assert wrong["inclusion"] is None and "force_unit" in wrong["causes"]
+    assert wrong["inclusion"] is None and wrong["causes"] == ["misfit"]
 
 
 def test_an_inclusion_is_judged_whatever_the_gel_does(bank):
@@ -69,6 +69,11 @@ def test_an_inclusion_is_judged_whatever_the_gel_does(bank):
     found = bank.judge(x, noisy(disc), noise_sd_n=0.02, known=["gel", "support", "smooth"])
     assert found["inclusion"] is True and found["model"] == "robust", found
     assert found["position"]["interval"][0] < 0 < found["position"]["interval"][1]
+    # A sensor of one force.
+    one = bank.judge(x, noisy(disc)[1], noise_sd_n=0.02, known=["gel", "support", "smooth"])
+    assert one["inclusion"] is True and one["noise_sd_lateral_n"] is None, one
+    with pytest.raises(palpate.Refused, match="the exact model needs lateral forces"):
+        bank.locate(x, gel[1])
     assert bank.judge(x, noisy(gel), zeroed=True)["inclusion"] is None
     assert bank.judge(x, 1000 * gel)["causes"] == ["force_unit"]
     with pytest.raises(palpate.Refused, match="known"):

@@ -8,6 +8,8 @@ use crate::stats::noncentral::student_point;
 /// Steps of the method of Levenberg and Marquardt, and the share of the sum of squares below which one is the last.
 const MOST_STEPS: usize = 200;
 const SMALLEST_GAIN: f64 = 1e-10;
+/// No step is smaller than with this damping.
+const LARGEST_DAMPING: f64 = 1e12;
 /// Derivatives are differences over this.
 const DIFFERENCE: f64 = 1e-5;
 
@@ -79,11 +81,15 @@ fn jacobian(model: &Model<'_>, at: &[f64], samples: usize) -> DMatrix<f64> {
     derivatives
 }
 
-/// Fits `model` to `data` by least squares, from the parameters `start`, each of the order of 1; none where no parameters fit better than
-/// others.
+/// The parameters of least squares, by the method of Levenberg and Marquardt from `start`, and what they leave of the `data`; none where
+/// it does not end.
 ///
-/// Implements: CAL-010, CAL-030.
-pub(super) fn fit(model: &Model<'_>, data: &[f64], start: &[f64]) -> Option<Fit> {
+/// Implements: CAL-010.
+fn least_squares(
+    model: &Model<'_>,
+    data: &[f64],
+    start: &[f64],
+) -> Option<(Vec<f64>, DVector<f64>)> {
     let mut at = start.to_vec();
     let mut left = residuals(model, data, &at);
     let mut damping = 1e-3;
@@ -94,26 +100,32 @@ pub(super) fn fit(model: &Model<'_>, data: &[f64], start: &[f64]) -> Option<Fit>
             normal[(parameter, parameter)] *= 1.0 + damping;
         }
         let step = normal.cholesky()?.solve(&gradient);
-        let next: Vec<f64> = at
-            .iter()
-            .zip(step.iter())
-            .map(|(at, step)| at + step)
-            .collect();
+        let pairs = at.iter().zip(step.iter());
+        let next: Vec<f64> = pairs.map(|(at, step)| at + step).collect();
         let found = residuals(model, data, &next);
         let (before, after) = (left.norm_squared(), found.norm_squared());
         if after < before {
             (at, left, damping) = (next, found, 0.1 * damping);
             if before - after < SMALLEST_GAIN * before {
-                break;
+                return Some((at, left));
             }
         } else {
             // Not a number is no step either.
             damping *= 10.0;
-            if damping > 1e12 {
-                break;
+            if damping > LARGEST_DAMPING {
+                return Some((at, left));
             }
         }
     }
+    None
+}
+
+/// Fits `model` to `data` by least squares, from the parameters `start`, each of the order of 1; none where no parameters fit better than
+/// others.
+///
+/// Implements: CAL-030, CAL-031.
+pub(super) fn fit(model: &Model<'_>, data: &[f64], start: &[f64]) -> Option<Fit> {
+    let (at, left) = least_squares(model, data, start)?;
     let squares = left.norm_squared();
     let derivatives = jacobian(model, &at, data.len());
     let inverse = derivatives.tr_mul(&derivatives).cholesky()?.inverse();
@@ -152,7 +164,11 @@ impl Fit {
     pub fn interval(&self, of: impl Fn(&[f64]) -> f64) -> Result<Interval, Refusal> {
         let gradient = jacobian(&|at| vec![of(at)], &self.parameters, 1);
         let variance = (&gradient * &self.covariance * gradient.transpose())[(0, 0)];
-        Interval::of(of(&self.parameters), libm::sqrt(variance), self.degrees)
+        Interval::of(
+            of(&self.parameters),
+            libm::sqrt(variance.max(0.0)),
+            self.degrees,
+        )
     }
 
     /// The correlation of two parameters.

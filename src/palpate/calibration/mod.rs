@@ -211,8 +211,7 @@ pub fn calibrate<'a>(
         contact: question.contact,
         no_drift: true,
     };
-    let start = empirical_law(&curve.on_the_way(), question.contact);
-    let Some(mut start) = start else {
+    let Some(mut start) = empirical_law(&curve.on_the_way(), question.contact) else {
         return Ok(Calibration {
             curve,
             cause: Some(CurveCause::NoContact),
@@ -228,40 +227,12 @@ pub fn calibrate<'a>(
         start.insert(known.parameters(), 0.0);
         known.no_drift = false;
     }
-    let mut found = best(curve, known, Elastic::Empirical, &start);
+    let found = best(curve, known, Elastic::Empirical, &start);
     let is_contact = matches!(found.cause, None | Some(CurveCause::Misfit));
-    let (Some((phantom, asked)), true, Some(start)) = (question.gel, is_contact, &found.fit) else {
-        return Ok(found);
-    };
-    check_layers(phantom, asked.layers)?;
-    let start = start.parameters.clone();
-    let parts = found.model().parts(&start);
-    let (deepest, law) = (curve.deepest() - parts.contact, parts.elastic.to_vec());
-    let mut phantom = phantom.clone();
-    let mut begin = start;
-    for round in 0..MOST_ROUNDS {
-        // There is room for a contact that the gel's own law finds earlier.
-        let gel = Gel::new(&phantom, asked, 1.05 * deepest + 5e-5)?;
-        let elastic = Elastic::Gel(Box::new(gel));
-        let moduli = vec![0.0; elastic.parameters()];
-        // At first as stiff as the empirical law at the end of the curve.
-        let end = 1e3 * deepest;
-        let ratio = Elastic::Empirical.force(end, &law) / elastic.force(end, &moduli);
-        let ratio = if round == 0 { libm::log(ratio) } else { 0.0 };
-        begin.truncate(known.parameters());
-        begin.extend(moduli.iter().map(|_| ratio));
-        found = best(curve, known, elastic, &begin);
-        let Some(fit) = &found.fit else { break };
-        begin.clone_from(&fit.parameters);
-        let changes = found.model().parts(&begin).elastic.to_vec();
-        // One factor of all moduli needs no second table.
-        if asked.layers.is_empty() || changes.iter().all(|of| of.abs() < SAME_MODULUS) {
-            break;
-        }
-        let factors: Vec<f64> = changes.iter().map(|change| libm::exp(*change)).collect();
-        phantom = stiffened(&phantom, asked.layers, &factors)?;
+    match (question.gel, &found.fit) {
+        (Some(gel), Some(start)) if is_contact => found.of_gel(gel, &start.parameters),
+        _ => Ok(found),
     }
-    Ok(found)
 }
 
 fn check_layers(phantom: &Phantom, layers: &[usize]) -> Result<(), Refusal> {
@@ -362,6 +333,52 @@ fn best<'a>(curve: &'a Curve, known: Known, elastic: Elastic, start: &[f64]) -> 
 }
 
 impl<'a> Calibration<'a> {
+    /// The fit of the forces of a gel, after that of the empirical law, which ended at the parameters `start`.
+    ///
+    /// Implements: CAL-010, CAL-012.
+    fn of_gel(
+        &self,
+        (phantom, asked): (&Phantom, Indentation<'_>),
+        start: &[f64],
+    ) -> Result<Calibration<'a>, FemError> {
+        check_layers(phantom, asked.layers)?;
+        let parts = self.model().parts(start);
+        let deepest = self.curve.deepest() - parts.contact;
+        let end = 1e3 * deepest;
+        let force = Elastic::Empirical.force(end, parts.elastic);
+        let sensor = self.known.parameters();
+        let (mut phantom, mut begin) = (phantom.clone(), start[..sensor].to_vec());
+        let mut found;
+        let mut round = 0;
+        loop {
+            // There is room for a contact that the gel's own law finds earlier.
+            let gel = Gel::new(&phantom, asked, 1.05 * deepest + 5e-5)?;
+            let elastic = Elastic::Gel(Box::new(gel));
+            let moduli = vec![0.0; elastic.parameters()];
+            // At first as stiff as the empirical law at the end of the curve.
+            let ratio = force / elastic.force(end, &moduli);
+            let ratio = if round == 0 { libm::log(ratio) } else { 0.0 };
+            begin.truncate(sensor);
+            begin.extend(moduli.iter().map(|_| ratio));
+            found = best(self.curve, self.known, elastic, &begin);
+            let Some(fit) = &found.fit else { break };
+            begin.clone_from(&fit.parameters);
+            let changes = found.model().parts(&begin).elastic;
+            // One factor of all moduli needs no second table.
+            if asked.layers.is_empty() || changes.iter().all(|of| of.abs() < SAME_MODULUS) {
+                break;
+            }
+            round += 1;
+            if round == MOST_ROUNDS {
+                found.cause = Some(CurveCause::Misfit);
+                break;
+            }
+            let factors: Vec<f64> = changes.iter().map(|change| libm::exp(*change)).collect();
+            phantom = stiffened(&phantom, asked.layers, &factors)?;
+        }
+        Ok(found)
+    }
+
     fn model(&self) -> CurveModel<'_> {
         CurveModel {
             curve: self.curve,

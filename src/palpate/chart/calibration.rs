@@ -31,6 +31,7 @@ pub fn calibration_figure(calibrations: &[Calibration<'_>]) -> Result<String, Re
     )
 }
 
+/// A curve beside its fit, and what the fit leaves.
 fn panels_of(of: &Calibration<'_>) -> Result<Vec<Panel>, Refusal> {
     let curve = of.curve;
     let (x_name, abscissa): (_, Vec<f64>) = match curve.times() {
@@ -53,26 +54,19 @@ fn panels_of(of: &Calibration<'_>) -> Result<Vec<Panel>, Refusal> {
     let dots = |colour, points| Line::new(colour, points).wide(0.0).dotted(2);
     let mut lines = vec![dots(GREY, points(curve.forces())).named("curve")];
     let mut panel = Panel::new("Normal force (N)", [x, y], 200, Vec::new());
-    let mut caption = vec![format!("{}.", curve.file())];
+    panel.caption = vec![format!("{}.", curve.file())];
     if let Some(cause) = of.cause {
-        caption.push(format!("It cannot be judged: {}.", cause.in_words()));
+        let words = format!("It cannot be judged: {}.", cause.in_words());
+        panel.caption.push(words);
     }
     if let Some(contact) = of.contact()? {
-        let Interval { estimate, ends } = contact.map(|depth| 1e3 * depth);
-        let [estimate, low, high] = [estimate, ends[0], ends[1]].map(|of| trimmed(of, 3));
-        caption.push(match ends[0] == ends[1] {
-            true => format!("Contact at {estimate} mm, as given."),
-            false => format!("Contact at {estimate} mm (95 %: {low} to {high} mm)."),
-        });
-        let at = contact.estimate;
-        let place = match curve.times() {
-            Some(times) => {
-                let touched = curve.depths().iter().position(|depth| *depth >= at);
-                touched.map(|sample| times[sample])
-            }
-            None => Some(1e3 * at),
-        };
-        if let Some(place) = place {
+        panel.caption.push(in_words(contact));
+        let touched = curve
+            .depths()
+            .iter()
+            .position(|depth| *depth >= contact.estimate);
+        if let Some(sample) = touched {
+            let place = abscissa[sample];
             let line = Line::new(INK, vec![(place, y[0]), (place, y[1])]).wide(1.0);
             lines.push(line.dashed(true).named("contact"));
         }
@@ -82,7 +76,6 @@ fn panels_of(of: &Calibration<'_>) -> Result<Vec<Panel>, Refusal> {
         lines.push(Line::new(colour, points(expected)).named("fit"));
     }
     panel.lines = lines;
-    panel.caption = caption;
     if expected.is_empty() {
         panel.x_name = x_name.into();
         return Ok(vec![panel]);
@@ -96,4 +89,14 @@ fn panels_of(of: &Calibration<'_>) -> Result<Vec<Panel>, Refusal> {
     left.y = roomy(residuals.iter().copied().chain(left.y));
     left.x_name = x_name.into();
     Ok(vec![panel, left])
+}
+
+/// Where the probe touched the gel.
+fn in_words(contact: Interval) -> String {
+    let Interval { estimate, ends } = contact.map(|depth| 1e3 * depth);
+    let [estimate, low, high] = [estimate, ends[0], ends[1]].map(|of| trimmed(of, 3));
+    match ends[0] == ends[1] {
+        true => format!("Contact at {estimate} mm, as given."),
+        false => format!("Contact at {estimate} mm (95 %: {low} to {high} mm)."),
+    }
 }

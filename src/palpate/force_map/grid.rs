@@ -34,14 +34,7 @@ pub fn gridded(samples: &[Sample], steps: [f64; 2]) -> Result<Gridded, Refusal> 
         let refusal = Refusal::value("grid", step, "a finite number of metres above 0");
         refusal.when(!(step > 0.0 && step.is_finite()))?;
     }
-    let numbers = |axis: usize| -> Vec<i64> {
-        let number = |sample: &Sample| libm::round(sample[axis] / steps[axis]) as i64;
-        let mut numbers: Vec<i64> = samples.iter().map(number).collect();
-        numbers.sort_unstable();
-        numbers.dedup();
-        numbers
-    };
-    let axes = [numbers(0), numbers(1)];
+    let axes = [0, 1].map(|axis| numbers(samples, axis, steps[axis]));
     // Before they are laid out: n samples can span n² poses.
     let (all, count) = (axes[0].len() * axes[1].len(), samples.len());
     let found = format!("the grid has {all} poses, and there are {count} samples");
@@ -82,84 +75,116 @@ pub fn gridded(samples: &[Sample], steps: [f64; 2]) -> Result<Gridded, Refusal> 
     })
 }
 
+/// The whole multiples of a step to which samples are nearest along an axis.
+fn numbers(samples: &[Sample], axis: usize, step: f64) -> Vec<i64> {
+    let number = |sample: &Sample| libm::round(sample[axis] / step) as i64;
+    let mut numbers: Vec<i64> = samples.iter().map(number).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    numbers
+}
+
 /// Normal and lateral force at a pose, and the squares of what the plane leaves of the samples that are nearest to this pose.
 struct AtPose {
     forces: [f64; 2],
     squares: [f64; 2],
 }
 
+/// A sample near a pose: its distances from it over the steps, and its weight.
+struct Near<'s> {
+    place: [f64; 2],
+    weight: f64,
+    sample: &'s Sample,
+}
+
+impl Near<'_> {
+    fn is_nearest(&self) -> bool {
+        self.place.iter().all(|u| u.abs() <= 0.5)
+    }
+}
+
+/// The samples less than a step away from a pose.
+fn near(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Vec<Near<'_>> {
+    let tricube = |u: f64| {
+        let rest = 1.0 - u.abs() * u * u;
+        rest * rest * rest
+    };
+    let near = samples.iter().filter_map(|sample| {
+        let place = [0, 1].map(|axis| sample[axis] / steps[axis] - pose[axis] as f64);
+        let is_near = place.iter().all(|u| u.abs() < 1.0);
+        is_near.then(|| Near {
+            place,
+            weight: tricube(place[0].abs()) * tricube(place[1].abs()),
+            sample,
+        })
+    });
+    near.collect()
+}
+
 /// Implements: MAP-080.
 fn at_pose(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Result<AtPose, Refusal> {
-    let place = |sample: &Sample| [0, 1].map(|axis| sample[axis] / steps[axis] - pose[axis] as f64);
-    let near: Vec<([f64; 2], &Sample)> = samples
-        .iter()
-        .map(|sample| (place(sample), sample))
-        .filter(|(place, _)| place.iter().all(|u| u.abs() < 1.0))
-        .collect();
-    let is_nearest = |place: &[f64; 2]| place.iter().all(|u| u.abs() <= 0.5);
-    if !near.iter().any(|(place, _)| is_nearest(place)) {
+    let near = near(samples, pose, steps);
+    if !near.iter().any(Near::is_nearest) {
         let [depth, lateral] = [0, 1].map(|axis| mm(pose[axis] as f64 * steps[axis]));
         let found = format!("no sample near depth {depth} mm, lateral {lateral} mm of the grid");
         return Err(Refusal::state(found, "choose a coarser grid"));
     }
-    let tricube = |u: &f64| {
-        let rest = 1.0 - u.abs() * u * u;
-        rest * rest * rest
-    };
-    let weights: Vec<f64> = (near.iter())
-        .map(|(place, _)| place.map(f64::abs).iter().map(tricube).product())
-        .collect();
-    let all: f64 = weights.iter().sum();
-    let mean = |of: &dyn Fn(usize) -> f64| {
-        let weighted = weights
-            .iter()
-            .enumerate()
-            .map(|(at, weight)| weight * of(at));
+    let all: f64 = near.iter().map(|of| of.weight).sum();
+    let mean = |value: &dyn Fn(&Near<'_>) -> f64| {
+        let weighted = near.iter().map(|of| of.weight * value(of));
         weighted.sum::<f64>() / all
     };
     // About the means, which count whatever slopes the samples say nothing of.
-    let middle = [0, 1].map(|axis| mean(&|at| near[at].0[axis]));
-    let about = |place: &[f64; 2]| [place[0] - middle[0], place[1] - middle[1]];
-    // The normal equations of both slopes, over the weight of all.
-    let product =
-        |one: usize, other: usize| mean(&|at| about(&near[at].0)[one] * about(&near[at].0)[other]);
-    let [depth, both, lateral] = [product(0, 0), product(0, 1), product(1, 1)];
-    let (trace, determinant) = (depth + lateral, depth * lateral - both * both);
+    let middle = [0, 1].map(|axis| mean(&|of| of.place[axis]));
+    let about = |place: [f64; 2]| [place[0] - middle[0], place[1] - middle[1]];
+    let product = |one: usize, other: usize| {
+        mean(&|of| {
+            let about = about(of.place);
+            about[one] * about[other]
+        })
+    };
+    let squares = [product(0, 0), product(0, 1), product(1, 1)];
     let mut fit = AtPose {
         forces: [0.0; 2],
         squares: [0.0; 2],
     };
     for channel in [0, 1] {
-        let force = |at: usize| near[at].1[2 + channel];
+        let force = |of: &Near<'_>| of.sample[2 + channel];
         let level = mean(&force);
-        let [along, across] =
-            [0, 1].map(|axis| mean(&|at| about(&near[at].0)[axis] * (force(at) - level)));
-        let slopes = if trace <= RANK {
-            [0.0; 2]
-        } else if determinant <= RANK * trace * trace {
-            // Samples on a line: the slope along it.
-            [
-                depth * along + both * across,
-                both * along + lateral * across,
-            ]
-            .map(|slope| slope / (trace * trace))
-        } else {
-            [
-                lateral * along - both * across,
-                depth * across - both * along,
-            ]
-            .map(|slope| slope / determinant)
-        };
-        let plane = |place: &[f64; 2]| {
+        let along = |axis: usize| mean(&|of| about(of.place)[axis] * (force(of) - level));
+        let slopes = slopes(squares, [along(0), along(1)]);
+        let plane = |place: [f64; 2]| {
             let [depth, lateral] = about(place);
             level + slopes[0] * depth + slopes[1] * lateral
         };
-        fit.forces[channel] = plane(&[0.0; 2]);
-        let nearest = near.iter().filter(|(place, _)| is_nearest(place));
-        let left = nearest.map(|(place, sample)| sample[2 + channel] - plane(place));
+        fit.forces[channel] = plane([0.0; 2]);
+        let nearest = near.iter().filter(|of| of.is_nearest());
+        let left = nearest.map(|of| force(of) - plane(of.place));
         fit.squares[channel] = left.map(|left| left * left).sum();
     }
     Ok(fit)
+}
+
+/// The slopes of least squares, the least ones if there are many: the solution of a symmetric matrix of two rows.
+fn slopes([depth, both, lateral]: [f64; 3], [along, across]: [f64; 2]) -> [f64; 2] {
+    let (trace, determinant) = (depth + lateral, depth * lateral - both * both);
+    let (slopes, over) = if determinant > RANK * trace * trace {
+        let slopes = [
+            lateral * along - both * across,
+            depth * across - both * along,
+        ];
+        (slopes, determinant)
+    } else if trace > RANK {
+        // Samples on a line: the slope along it.
+        let slopes = [
+            depth * along + both * across,
+            both * along + lateral * across,
+        ];
+        (slopes, trace * trace)
+    } else {
+        ([0.0; 2], 1.0)
+    };
+    slopes.map(|slope| slope / over)
 }
 
 #[cfg(test)]
