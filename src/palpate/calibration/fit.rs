@@ -6,8 +6,8 @@ use crate::refusal::Refusal;
 use crate::stats::noncentral::student_point;
 
 /// Steps of the method of Levenberg and Marquardt, and the share of the sum of squares below which one is the last.
-const MOST_STEPS: usize = 200;
-const SMALLEST_GAIN: f64 = 1e-10;
+const MOST_STEPS: usize = 300;
+const SMALLEST_GAIN: f64 = 1e-8;
 /// No step is smaller than with this damping.
 const LARGEST_DAMPING: f64 = 1e12;
 /// Derivatives are differences over this.

@@ -208,15 +208,15 @@ probe = { radius_mm = 6.5, length_mm = 30 }
     assert_eq!(error, "layer = 7, but must be below 2");
 }
 
-/// A sphere on a gel that relaxes by a power law, 2 s down and 10 s held; without a contact, or from it on.
-fn held(amount: f64, air: f64, wrong: f64) -> Curve {
+/// A sphere on a gel that relaxes by a power law, 2 s down and 10 s held; from a contact on.
+fn held(amount: f64, air: f64) -> Curve {
     let times: Vec<f64> = (0..=480).map(|k| 0.025 * f64::from(k)).collect();
     let depths: Vec<f64> = times.iter().map(|t| 2e-3 * t.min(2.0)).collect();
     let elastic = |d: &f64| amount * (1e3 * (d - air)).max(0.0).powf(1.5);
     let elastic: Vec<f64> = depths.iter().map(elastic).collect();
     let terms = Relaxation::PowerLaw.terms(&[libm::log(0.5), libm::log(0.25)]);
     let generator = Generator::new(43, 0);
-    let noise = |k: usize| 2e-3 * generator.normal(0, k as u64) + wrong * (0.05 * k as f64).sin();
+    let noise = |k: usize| 2e-3 * generator.normal(0, k as u64);
     let forces = relaxed(&terms, &times, &elastic);
     let forces: Vec<f64> = forces
         .iter()
@@ -224,6 +224,19 @@ fn held(amount: f64, air: f64, wrong: f64) -> Curve {
         .map(|(k, f)| f + noise(k))
         .collect();
     Curve::new("held", Some(&times), &depths, &forces).unwrap()
+}
+
+/// A sphere on a gel, whose force is bent by 3 % to either side.
+fn bent() -> Curve {
+    let depths: Vec<f64> = (0..=200).map(|k| 2e-5 * f64::from(k)).collect();
+    let generator = Generator::new(45, 0);
+    let force = |(k, depth): (usize, &f64)| {
+        let elastic = 0.2 * (1e3 * (depth - 0.8e-3)).max(0.0).powf(1.5);
+        let noise = 2e-3 * generator.normal(0, k as u64);
+        elastic * (1.0 + 0.03 * (0.2 * k as f64).sin()) + noise
+    };
+    let forces: Vec<f64> = depths.iter().enumerate().map(force).collect();
+    Curve::new("bent", None, &depths, &forces).unwrap()
 }
 
 const ALONE: CalibrationQuestion<'_> = CalibrationQuestion {
@@ -234,7 +247,7 @@ const ALONE: CalibrationQuestion<'_> = CalibrationQuestion {
 // Verifies: CAL-021, CAL-022, CAL-030, CAL-032.
 #[test]
 fn the_relaxation_of_a_sphere_is_found_with_its_form() {
-    let curve = held(0.2, 0.8e-3, 0.0);
+    let curve = held(0.2, 0.8e-3);
     let found = calibrate(&curve, ALONE).unwrap();
     assert_eq!(
         (found.cause, found.relaxation),
@@ -266,11 +279,13 @@ fn the_relaxation_of_a_sphere_is_found_with_its_form() {
 #[test]
 fn a_curve_that_says_nothing_is_not_judged() {
     for (curve, cause) in [
-        (held(0.0, 0.8e-3, 0.0), CurveCause::NoContact),
-        (held(0.2, -1e-3, 0.0), CurveCause::NoAir),
-        (held(0.2, 0.8e-3, 0.05), CurveCause::Misfit),
+        (held(0.0, 0.8e-3), CurveCause::NoContact),
+        (held(0.2, -1e-3), CurveCause::NoAir),
+        (bent(), CurveCause::Misfit),
     ] {
         let found = calibrate(&curve, ALONE).unwrap();
+        // There is a fit to look at, but for what is not there.
+        assert!(found.expected().is_some() || cause == CurveCause::NoContact);
         assert_eq!(found.cause, Some(cause));
         assert_eq!(found.contact().unwrap(), None);
         assert_eq!(
@@ -292,6 +307,16 @@ fn curves_that_are_none_are_refused() {
     assert_eq!(
         curve(19, 1e-3),
         "c: 19 samples on the way into the gel; give at least 20"
+    );
+    let there_and_back: Vec<f64> = (-30i32..=30).map(|k| -1e-4 * f64::from(k.abs())).collect();
+    let kept = Curve::new("c", None, &there_and_back, &there_and_back).unwrap();
+    // Within 5 % of the way of 3 mm there is one sample behind the deepest.
+    assert_eq!(
+        (kept.depths().len(), kept.notes()),
+        (
+            32,
+            &["samples of the way back are not used: 29".to_string()][..]
+        )
     );
     assert_eq!(
         curve(40, 0.0),
