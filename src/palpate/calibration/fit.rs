@@ -10,6 +10,8 @@ const MOST_STEPS: usize = 300;
 const SMALLEST_GAIN: f64 = 1e-8;
 /// No step is smaller than with this damping.
 const LARGEST_DAMPING: f64 = 1e12;
+/// A fit that did not end counts if its parameters are nearer to the best ones than this, the square of a share of their deviation.
+const FARTHEST: f64 = 0.01;
 /// Derivatives are differences over this.
 const DIFFERENCE: f64 = 1e-5;
 
@@ -81,15 +83,15 @@ fn jacobian(model: &Model<'_>, at: &[f64], samples: usize) -> DMatrix<f64> {
     derivatives
 }
 
-/// The parameters of least squares, by the method of Levenberg and Marquardt from `start`, and what they leave of the `data`; none where
-/// it does not end.
+/// The parameters of least squares, by the method of Levenberg and Marquardt from `start`, what they leave of the `data`, and whether the
+/// method ended; none where no parameters fit better than others.
 ///
 /// Implements: CAL-010.
 fn least_squares(
     model: &Model<'_>,
     data: &[f64],
     start: &[f64],
-) -> Option<(Vec<f64>, DVector<f64>)> {
+) -> Option<(Vec<f64>, DVector<f64>, bool)> {
     let mut at = start.to_vec();
     let mut left = residuals(model, data, &at);
     let mut damping = 1e-3;
@@ -107,17 +109,17 @@ fn least_squares(
         if after < before {
             (at, left, damping) = (next, found, 0.1 * damping);
             if before - after < SMALLEST_GAIN * before {
-                return Some((at, left));
+                return Some((at, left, true));
             }
         } else {
             // Not a number is no step either.
             damping *= 10.0;
             if damping > LARGEST_DAMPING {
-                return Some((at, left));
+                return Some((at, left, true));
             }
         }
     }
-    None
+    Some((at, left, false))
 }
 
 /// Fits `model` to `data` by least squares, from the parameters `start`, each of the order of 1; none where no parameters fit better than
@@ -125,12 +127,16 @@ fn least_squares(
 ///
 /// Implements: CAL-030, CAL-031.
 pub(super) fn fit(model: &Model<'_>, data: &[f64], start: &[f64]) -> Option<Fit> {
-    let (at, left) = least_squares(model, data, start)?;
+    let (at, left, is_ended) = least_squares(model, data, start)?;
     let squares = left.norm_squared();
     let derivatives = jacobian(model, &at, data.len());
     let inverse = derivatives.tr_mul(&derivatives).cholesky()?.inverse();
-    let residuals: Vec<f64> = left.iter().copied().collect();
     let degrees = data.len() as f64 - at.len() as f64;
+    let gradient = derivatives.tr_mul(&left);
+    let away = gradient.dot(&(&inverse * &gradient)) * degrees / squares;
+    let is_near = away < FARTHEST;
+    (is_ended || is_near).then_some(())?;
+    let residuals: Vec<f64> = left.iter().copied().collect();
     let correlated = correlated(&residuals);
     let covariance = inverse * (correlated * squares / degrees);
     let is_finite = covariance.iter().all(|value| value.is_finite());

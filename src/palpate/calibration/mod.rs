@@ -229,8 +229,15 @@ pub fn calibrate<'a>(
     }
     let found = best(curve, known, Elastic::Empirical, &start);
     let is_contact = matches!(found.cause, None | Some(CurveCause::Misfit));
-    match (question.gel, &found.fit) {
-        (Some(gel), Some(start)) if is_contact => found.of_gel(gel, &start.parameters),
+    match question.gel {
+        Some(gel) if is_contact => {
+            // In much noise the empirical law may not end, where that of the gel does.
+            let start = found
+                .fit
+                .as_ref()
+                .map_or(start, |fit| fit.parameters.clone());
+            found.of_gel(gel, &start)
+        }
         _ => Ok(found),
     }
 }
@@ -333,7 +340,7 @@ fn best<'a>(curve: &'a Curve, known: Known, elastic: Elastic, start: &[f64]) -> 
 }
 
 impl<'a> Calibration<'a> {
-    /// The fit of the forces of a gel, after that of the empirical law, which ended at the parameters `start`.
+    /// The fit of the forces of a gel, after that of the empirical law, from its parameters `start`.
     ///
     /// Implements: CAL-010, CAL-012.
     fn of_gel(
