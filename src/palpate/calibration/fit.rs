@@ -187,8 +187,12 @@ impl Fit {
     ///
     /// Implements: CAL-022.
     pub fn criterion(&self) -> f64 {
-        let samples = self.residuals.len() as f64;
-        let parameters = self.parameters.len() as f64;
-        samples * libm::log(self.squares / samples) + parameters * libm::log(samples)
+        criterion(self.squares, self.residuals.len(), self.parameters.len())
     }
+}
+
+/// That of a sum of squares, so many samples and so many parameters.
+pub(super) fn criterion(squares: f64, samples: usize, parameters: usize) -> f64 {
+    let (samples, parameters) = (samples as f64, parameters as f64);
+    samples * libm::log(squares / samples) + parameters * libm::log(samples)
 }

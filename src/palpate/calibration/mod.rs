@@ -33,7 +33,7 @@ use crate::refusal::Refusal;
 use crate::stats::noncentral::{Tail, chi_square_point};
 use crate::text::extremes;
 use elastic::stiffened;
-use fit::{Fit, fit};
+use fit::{Fit, criterion, fit};
 
 /// What is known before a curve is fitted.
 #[derive(Debug, Clone, Copy)]
@@ -228,9 +228,9 @@ pub fn calibrate<'a>(
         known.no_drift = false;
     }
     let found = best(curve, known, Elastic::Empirical, &start);
-    let is_contact = matches!(found.cause, None | Some(CurveCause::Misfit));
+    let has_air = found.cause != Some(CurveCause::NoAir);
     match question.gel {
-        Some(gel) if is_contact => {
+        Some(gel) if has_air => {
             // In much noise the empirical law may not end, where that of the gel does.
             let start = found
                 .fit
@@ -251,9 +251,9 @@ fn check_layers(phantom: &Phantom, layers: &[usize]) -> Result<(), Refusal> {
 }
 
 /// Where a fit of the empirical law to the way into a gel begins, without drift: at the best of some contacts and exponents, what is linear
-/// fitted. None where no force grows.
+/// fitted. None where no force rises above offset, drift and noise.
 ///
-/// Implements: CAL-010.
+/// Implements: CAL-010, CAL-040.
 fn empirical_law(curve: &Curve, contact: Option<f64>) -> Option<Vec<f64>> {
     let [least, most] = extremes(curve.depths().iter().copied())?;
     let scanned = |k: u32| least + (most - least) * f64::from(k) / f64::from(CONTACTS);
@@ -262,30 +262,35 @@ fn empirical_law(curve: &Curve, contact: Option<f64>) -> Option<Vec<f64>> {
         None => (0..CONTACTS).map(scanned).collect(),
     };
     let forces = DVector::from_column_slice(curve.forces());
+    // What is linear, and the sum of squares that it leaves.
+    let linear = |columns: &DMatrix<f64>| {
+        let found = columns.tr_mul(columns).cholesky()?;
+        let found = found.solve(&columns.tr_mul(&forces));
+        let squares = (&forces - columns * &found).norm_squared();
+        Some((found, squares))
+    };
+    let samples = curve.depths().len();
+    let shares: Vec<f64> = curve.shares().collect();
+    let flat = DMatrix::from_fn(samples, 2, |at, column| [1.0, shares[at]][column]);
     let mut best = (f64::INFINITY, None);
     for (at, exponent) in contacts.iter().flat_map(|at| EXPONENTS.map(|p| (at, p))) {
         let law = [0.0, libm::log(exponent), 0.0];
-        let shape = curve
-            .depths()
-            .iter()
-            .map(|depth| Elastic::Empirical.force(1e3 * (depth - at), &law));
-        let columns = shape
-            .zip(curve.shares())
-            .map(|(force, share)| [1.0, share, force]);
-        let columns: Vec<f64> = columns.flatten().collect();
-        let columns = DMatrix::from_row_slice(curve.depths().len(), 3, &columns);
-        let Some(normal) = columns.tr_mul(&columns).cholesky() else {
+        let shape = curve.depths().iter().map(|depth| 1e3 * (depth - at));
+        let shape = shape.map(|depth| Elastic::Empirical.force(depth, &law));
+        let mut columns = flat.clone().insert_column(2, 0.0);
+        columns.set_column(2, &DVector::from_iterator(samples, shape));
+        let Some((found, squares)) = linear(&columns) else {
             continue;
         };
-        let found = normal.solve(&columns.tr_mul(&forces));
-        let squares = (&forces - columns * &found).norm_squared();
         if found[2] > 0.0 && squares < best.0 {
             let own = contact.is_none().then_some(1e3 * at);
             let rest = [found[0], libm::log(found[2]), law[1], law[2]];
             best = (squares, Some(own.into_iter().chain(rest).collect()));
         }
     }
-    best.1
+    // Offset, drift and stiffness, contact and exponent; the first two alone.
+    let rises = criterion(best.0, samples, 5) + CONTACT < criterion(linear(&flat)?.1, samples, 2);
+    best.1.filter(|_| rises)
 }
 
 /// The fit of a law, from the parameters `start` without those of relaxation, with the best form of relaxation.
@@ -395,18 +400,13 @@ impl<'a> Calibration<'a> {
         }
     }
 
+    /// Why a curve that rises above offset and drift cannot be judged.
+    ///
     /// Implements: CAL-040.
     fn why_not(&self) -> Option<CurveCause> {
-        let forces = self.curve.forces();
         let Some(found) = &self.fit else {
             return Some(CurveCause::Misfit);
         };
-        let shares: Vec<f64> = self.curve.shares().collect();
-        let flat = |at: &[f64]| shares.iter().map(|share| at[0] + at[1] * share).collect();
-        let alone = fit(&flat, forces, &[0.0, 0.0]);
-        if alone.is_none_or(|alone| alone.criterion() < found.criterion() + CONTACT) {
-            return Some(CurveCause::NoContact);
-        }
         let noise = sd_of_steps(&found.residuals);
         let more = found.squares / found.residuals.len() as f64 - noise * noise;
         let [least, most] = extremes(found.expected.iter().copied()).unwrap_or_default();
@@ -420,10 +420,16 @@ impl<'a> Calibration<'a> {
         (is_estimated && contact < self.curve.depths()[0]).then_some(CurveCause::NoAir)
     }
 
+    /// The fit, if the curve can be judged.
+    fn judged(&self) -> Option<&Fit> {
+        self.fit.as_ref().filter(|_| self.cause.is_none())
+    }
+
     /// A quantity of the fit, if the curve can be judged.
     fn interval(&self, of: impl Fn(&Parts<'_>) -> f64) -> Result<Option<Interval>, Refusal> {
-        let fit = self.fit.as_ref().filter(|_| self.cause.is_none());
-        let interval = fit.map(|fit| fit.interval(|at| of(&self.model().parts(at))));
+        let interval = self
+            .judged()
+            .map(|fit| fit.interval(|at| of(&self.model().parts(at))));
         interval.transpose()
     }
 
@@ -463,7 +469,7 @@ impl<'a> Calibration<'a> {
     ///
     /// Implements: CAL-031.
     pub fn noise_sd(&self) -> Result<Option<Interval>, Refusal> {
-        let Some(fit) = self.fit.as_ref().filter(|_| self.cause.is_none()) else {
+        let Some(fit) = self.judged() else {
             return Ok(None);
         };
         let free = fit.residuals.len() as f64 - fit.parameters.len() as f64;

@@ -70,7 +70,6 @@ impl Calibration<'_> {
     fn law_rows(&self, layers: &[usize], rows: &mut Rows) -> Result<(), Refusal> {
         let law = self.law()?;
         match (&self.elastic, &law[..]) {
-            (_, []) => {}
             (Elastic::Empirical, [stiffness, exponent, growth]) => {
                 let growth = growth.map(libm::log);
                 let [k, p, q] = [*stiffness, *exponent, growth].map(|of| shown(of, 1.0));
@@ -78,10 +77,11 @@ impl Calibration<'_> {
                 let value = json!({"k_n": written(*stiffness), "p": written(*exponent), "q_per_mm": written(growth)});
                 rows.shown("empirical_law", "law", value, text);
             }
-            (Elastic::Empirical, _) => {}
-            (Elastic::Gel(_), _) => {
+            (Elastic::Gel(_), [_, ..]) => {
                 modulus_row(rows, "Young's modulus, kPa", &self.moduli(layers)?)
             }
+            // A curve that cannot be judged.
+            _ => {}
         }
         Ok(())
     }
