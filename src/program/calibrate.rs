@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::error::refuse;
 use super::layout::LayoutArguments;
-use super::numbers::{length, position};
+use super::numbers::{for_each, length, position};
 use super::output::{Envelope, note, write};
 use super::solve::{phantom, tell_large_strain};
 use super::{CliError, Format};
@@ -78,13 +78,11 @@ pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), CliError> {
         .iter()
         .map(|path| Curve::read(path, &layout));
     let curves = curves.collect::<Result<Vec<_>, _>>()?;
-    let laterals = match (&arguments.laterals[..], curves.len()) {
-        ([lateral], _) => vec![*lateral; curves.len()],
-        (laterals, count) if laterals.len() == count => laterals.to_vec(),
-        (laterals, count) => refuse!(
-            "--lateral-mm has {} positions for {count} curves; give one, or one for each",
-            laterals.len()
-        ),
+    let Some(laterals) = for_each(&arguments.laterals, curves.len()) else {
+        let (positions, count) = (arguments.laterals.len(), curves.len());
+        refuse!(
+            "--lateral-mm has {positions} positions for {count} curves; give one, or one for each"
+        )
     };
     let mut found = Vec::new();
     for (curve, lateral) in curves.iter().zip(laterals) {

@@ -60,6 +60,14 @@ fn number(text: &str, power: i32, is_right: fn(f64) -> bool, must_be: &str) -> R
     number.ok_or_else(|| format!("must be {must_be}"))
 }
 
+/// A number for each of so many: the one, or as many as there are; none where there are others.
+pub fn for_each(numbers: &[f64], count: usize) -> Option<Vec<f64>> {
+    match numbers {
+        [number] => Some(vec![*number; count]),
+        numbers => (numbers.len() == count).then(|| numbers.to_vec()),
+    }
+}
+
 /// Reads a length above 0 in mm; gives metres.
 ///
 /// # Errors

@@ -80,8 +80,10 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
 /// Implements: CLI-031, CLI-174.
 fn measured_map(path: &Path, layout: &Layout) -> Result<ForceMap, CliError> {
     if path.extension() == Some("csv".as_ref()) {
-        let (text, file) = (super::output::read(path)?, path.display().to_string());
-        let (table, notes) = ForceTable::from_csv_with_notes(&text, &file, layout)?;
+        let read = read(path, |text, file| {
+            ForceTable::from_csv_with_notes(text, file, layout)
+        });
+        let ((table, notes), file) = (read?, path.display().to_string());
         notes.iter().for_each(|text| note(&file, text));
         let source = Source::Measured(Measurement::new(&file, ""));
         return Ok(ForceMap::new(source, None, table)?);

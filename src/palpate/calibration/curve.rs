@@ -2,19 +2,19 @@
 
 use std::path::Path;
 
-use crate::csv::{Column, Layout, Rows, names_beside};
+use crate::csv::{Column, Layout, Rows};
 use crate::refusal::Refusal;
 use crate::stats::error::check_samples;
 use crate::text::extremes;
 
-const TIME: Column = &[&[("time_s", 0), ("time_ms", -3)]];
-/// How far the probe went, from any zero; the force.
-const COLUMNS: [Column; 2] = [
+/// How far the probe went, from any zero; the force; the time, which may be missing.
+const COLUMNS: [Column; 3] = [
     &[
         &[("depth_mm", -3), ("depth_m", 0)],
         &[("position_mm", -3), ("position_m", 0)],
     ],
     &[&[("normal_force_n", 0), ("normal_force_mn", -3)]],
+    &[&[("time_s", 0), ("time_ms", -3)]],
 ];
 /// The headers that are right, for a person.
 const EXPECTED_HEADER: &str = "depth_mm,normal_force_n and time_s if there are times, in any order, or say with --columns what each holds";
@@ -65,22 +65,13 @@ impl Curve {
     /// Implements: CAL-001.
     pub fn from_csv(text: &str, file: &str, layout: &Layout) -> Result<Curve, Refusal> {
         let read = || {
-            let [depth, force] = COLUMNS;
-            let timed = names_beside(text, COLUMNS, TIME, layout);
-            let (rows, notes) = if timed {
-                let read =
-                    Rows::parse_samples(text, [depth, force, TIME], EXPECTED_HEADER, layout)?;
-                (read.rows, read.notes)
-            } else {
-                let read = Rows::parse_samples(text, [depth, force], EXPECTED_HEADER, layout)?;
-                let rows = read.rows.into_iter();
-                let rows = rows.map(|(line, [depth, force])| (line, [depth, force, 0.0]));
-                (rows.collect(), read.notes)
-            };
-            let column = |of: usize| rows.iter().map(|(_, row)| row[of]).collect::<Vec<_>>();
-            let times = timed.then(|| column(2));
+            let read = Rows::parse_last_optional(text, COLUMNS, EXPECTED_HEADER, layout)?;
+            let (table, has_times) = read;
+            let rows = table.rows.iter();
+            let column = |of: usize| rows.clone().map(|(_, row)| row[of]).collect::<Vec<_>>();
+            let times = has_times.then(|| column(2));
             let mut curve = Curve::new(file, times.as_deref(), &column(0), &column(1))?;
-            curve.notes.splice(0..0, notes);
+            curve.notes.splice(0..0, table.notes);
             Ok(curve)
         };
         read().map_err(|refusal: Refusal| Refusal {

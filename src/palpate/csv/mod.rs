@@ -80,12 +80,7 @@ impl<const N: usize> Rows<N> {
         layout: &Layout,
     ) -> Result<(Self, Option<(usize, Refusal)>), Refusal> {
         layout.check(&columns)?;
-        let ((first, line), rest) = header_and_rows(text);
-        let lines = std::iter::once((first, line)).chain(rest);
-        let mut lines: Vec<_> = lines.filter(|(line, _)| *line > layout.skipped).collect();
-        if lines.is_empty() {
-            lines.push((first, ""));
-        }
+        let lines = lines(text, layout);
         let header = Header::find(&lines, columns, layout);
         let header = header.map_err(|(found, (line, header))| {
             let found = format!("{found} in the header {:?}", shortened(header.trim()));
@@ -122,21 +117,48 @@ impl<const N: usize> Rows<N> {
     }
 }
 
-/// Whether the header of a table of `columns`, or its layout, names another column.
-///
-/// Implements: CAL-001, TRC-011.
-pub fn names_beside<const N: usize>(
-    text: &str,
-    columns: [Column; N],
-    other: Column,
-    layout: &Layout,
-) -> bool {
+impl Rows<3> {
+    /// As [`Rows::parse_samples`], where the header may lack the last column: its numbers are then 0. Also whether it is there.
+    ///
+    /// # Errors
+    /// As [`Rows::parse_samples`].
+    ///
+    /// Implements: CAL-001, TRC-011.
+    pub fn parse_last_optional(
+        text: &str,
+        columns: [Column; 3],
+        expected: &str,
+        layout: &Layout,
+    ) -> Result<(Self, bool), Refusal> {
+        let [first, second, last] = columns;
+        let is_named = |header: Header<'_, 2>| header.fields.iter().any(|of| names(of, last));
+        let header = Header::find(&lines(text, layout), [first, second], layout);
+        if layout.states(last) || header.is_ok_and(is_named) {
+            let rows = Rows::parse_samples(text, columns, expected, layout)?;
+            return Ok((rows, true));
+        }
+        let two = Rows::parse_samples(text, [first, second], expected, layout)?;
+        let [one, other] = two.names;
+        let rows = two.rows.into_iter();
+        let rows = Rows {
+            line: two.line,
+            names: [one, other, ""],
+            rows: rows.map(|(line, [a, b])| (line, [a, b, 0.0])).collect(),
+            notes: two.notes,
+        };
+        Ok((rows, false))
+    }
+}
+
+/// The lines of `text` that say something and are not skipped, with their numbers; at least one.
+fn lines<'a>(text: &'a str, layout: &Layout) -> Vec<(usize, &'a str)> {
     let ((first, line), rest) = header_and_rows(text);
     let lines = std::iter::once((first, line)).chain(rest);
-    let lines: Vec<_> = lines.filter(|(line, _)| *line > layout.skipped).collect();
-    let is_named = |header: Header<'_, N>| header.fields.iter().any(|of| names(of, other));
-    layout.states(other)
-        || !lines.is_empty() && Header::find(&lines, columns, layout).is_ok_and(is_named)
+    let mut lines: Vec<_> = lines.filter(|(line, _)| *line > layout.skipped).collect();
+    if lines.is_empty() {
+        lines.push((first, ""));
+    }
+    lines
 }
 
 /// The header of a table, and where its columns are.

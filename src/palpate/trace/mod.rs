@@ -58,7 +58,7 @@ pub use design::{Unknown, in_words, nuisances};
 pub use fit::{Cause, Fit, MISFIT_RATE, reasons};
 pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
 
-use crate::csv::{Column, Layout, Rows, names_beside};
+use crate::csv::{Column, Layout, Rows};
 use crate::decimal::mm;
 use crate::detect::DetectError;
 use crate::force::Force;
@@ -181,24 +181,16 @@ impl Trace {
     /// Implements: MAP-046, MAP-048, TRC-011.
     pub fn from_csv_as(text: &str, file: &str, layout: &Layout) -> Result<Trace, Refusal> {
         let read = || {
-            let [abscissa, normal, lateral] = COLUMNS;
-            let has_lateral = names_beside(text, [abscissa, normal], lateral, layout);
-            let (samples, line, name, mut notes): (Vec<Sample>, _, _, _) = if has_lateral {
-                let table = Rows::parse_samples(text, COLUMNS, EXPECTED_HEADER, layout)?;
-                (table.rows, table.line, table.names[0], table.notes)
-            } else {
-                let columns = [abscissa, normal];
-                let table = Rows::parse_samples(text, columns, EXPECTED_HEADER, layout)?;
-                let rows = table.rows.into_iter();
-                let rows = rows.map(|(line, [at, normal])| (line, [at, normal, 0.0]));
-                (rows.collect(), table.line, table.names[0], table.notes)
-            };
+            let read = Rows::parse_last_optional(text, COLUMNS, EXPECTED_HEADER, layout)?;
+            let (mut table, has_lateral) = read;
             if !has_lateral {
-                notes.push("there is no lateral force: the normal force alone counts".into());
+                let note = "there is no lateral force: the normal force alone counts";
+                table.notes.push(note.into());
             }
+            let samples = table.rows;
             let empty = Refusal::state("no samples under the header", "give at least one row");
-            empty.at(line).when(samples.is_empty())?;
-            let abscissa = if name.starts_with("time") {
+            empty.at(table.line).when(samples.is_empty())?;
+            let abscissa = if table.names[0].starts_with("time") {
                 check_times(&samples)?;
                 Abscissa::Time
             } else {
@@ -210,7 +202,7 @@ impl Trace {
                 abscissa,
                 samples,
                 has_lateral,
-                notes,
+                notes: table.notes,
             })
         };
         read().map_err(|refusal: Refusal| refusal.in_file(file))
@@ -316,8 +308,8 @@ fn check_pass(samples: &[Sample]) -> Result<(), Refusal> {
 }
 
 impl Record {
-    /// The record of `forces` (N; no lateral ones where they were not recorded) at `positions` (m), with the checks of [`Trace::from_csv`]. In messages `name` stands for the file, and the
-    /// number of a sample, from 1, for its line.
+    /// The record of `forces` (N; no lateral ones where they were not recorded) at `positions` (m), with the checks of
+    /// [`Trace::from_csv`]. In messages `name` stands for the file, and the number of a sample, from 1, for its line.
     ///
     /// ```
     /// use palpate::force::Force;

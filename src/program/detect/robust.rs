@@ -10,6 +10,7 @@ use super::arguments::{AnswerFormat, ModelName};
 use super::{DetectArguments, Noted, TwoMaps, Warnings, asked, many, tell, told, trimmed};
 use crate::CliError;
 use crate::error::refuse;
+use crate::numbers::for_each;
 use crate::output::{note, write};
 use palpate::bank::Bank;
 use palpate::chart::explanation_figure;
@@ -312,17 +313,17 @@ impl Detector<'_> {
 
 /// The depth of each of so many sweeps, m.
 fn depths(arguments: &DetectArguments, of_bank: f64, sweeps: usize) -> Result<Vec<f64>, CliError> {
-    match arguments.sweep.depths[..] {
-        [] => Ok(vec![of_bank; sweeps]),
-        [depth] => Ok(vec![depth; sweeps]),
-        ref depths if depths.len() == sweeps => Ok(depths.to_vec()),
-        ref depths => {
-            let (count, of) = (depths.len(), if sweeps == 1 { "sweep" } else { "sweeps" });
-            refuse!(
-                "--depth-mm has {count} depths for {sweeps} {of} of a place; give one, or one for each"
-            )
-        }
-    }
+    let depths = match &arguments.sweep.depths[..] {
+        [] => &[of_bank],
+        depths => depths,
+    };
+    let Some(each) = for_each(depths, sweeps) else {
+        let (count, of) = (depths.len(), if sweeps == 1 { "sweep" } else { "sweeps" });
+        refuse!(
+            "--depth-mm has {count} depths for {sweeps} {of} of a place; give one, or one for each"
+        )
+    };
+    Ok(each)
 }
 
 /// What was decided, and what explains the record.

@@ -55,7 +55,7 @@ fn a_record_at_a_known_position_by_hand() {
     assert_eq!(found.decision, Some(Decision::Inclusion));
 }
 
-// Verifies: TRC-020, TRC-024, TRC-060, CLI-049.
+// Verifies: TRC-011, TRC-020, TRC-024, TRC-060, CLI-049.
 #[test]
 fn maps_that_do_not_fit_are_refused() {
     let judged = |record: &Record, reference: &ForceTable, depth: f64| {
@@ -66,14 +66,17 @@ fn maps_that_do_not_fit_are_refused() {
     };
     let record = read(EXAMPLE).unwrap();
     let far = read(&format!("{EXAMPLE}# far\n3.1,0,0\n")).unwrap();
+    let one_channel = read("position_mm,normal_force_n\n-0.5,2.125\n").unwrap();
     let found = [
         judged(&record, &table(1.0), 0.001),
         judged(&record, &table(0.0), 0.0035),
         judged(&far, &table(0.0), 0.001),
+        judged(&one_channel, &table(0.0), 0.001),
     ];
     let expected = "t.csv: the maps do not differ at the samples, and leave no signal to decide by
 t.csv: depth 0.0035 m is outside the map, which has 0.001 to 0.003 m
-t.csv:5: position 3.1 mm is outside the maps, which have -3.0 to 3.0 mm; leave it out, or use --trim";
+t.csv:5: position 3.1 mm is outside the maps, which have -3.0 to 3.0 mm; leave it out, or use --trim
+t.csv: the exact model needs lateral forces, which the record lacks; use the robust model";
     assert_eq!(found.join("\n"), expected);
     let table = |depths: [f64; 2]| {
         let (laterals, forces) = (table(0.0).laterals().to_vec(), table(0.0).forces().clone());
