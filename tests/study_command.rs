@@ -117,14 +117,97 @@ fn killed_shards_go_on_and_give_the_same_bytes() {
     }
 }
 
-// Verifies: STU-024.
+// Verifies: STU-024, STU-026, STU-027.
 #[test]
-fn a_finished_study_computes_nothing() {
+fn a_finished_study_computes_nothing_and_takes_each_sample_once() {
     let place = finished("finished");
     let output = place.run("study run study.toml --out out");
     let holds = text(&output.stderr).contains("39 of 39 samples already computed");
     assert!(holds, "{output:?}");
     assert_eq!(place.read("out/samples-1-of-1.jsonl"), expected()[0]);
+    assert_takes_its_own_samples_once(&place);
+    assert_merges_in_any_order(&place);
+}
+
+/// Asserts that a run goes on with samples of its own shard alone, each of them once.
+fn assert_takes_its_own_samples_once(place: &Place) {
+    let file = "out/samples-1-of-1.jsonl";
+    let all = &expected()[0];
+    let lines: Vec<&str> = all.lines().collect();
+    let number = |line: &str| {
+        line.split([':', ','])
+            .nth(1)
+            .unwrap()
+            .parse::<usize>()
+            .unwrap()
+    };
+    let refused = |file: &str, text: String, line: &str, number: usize| {
+        place.write(file, &text);
+        let error = place.refused(line);
+        let at = text.lines().count();
+        assert_eq!(
+            error,
+            format!("{file}:{at}: sample {number} appears twice or belongs to another shard")
+        );
+        assert_eq!(place.read(file), text);
+    };
+    // The first sample again, with another one left to compute.
+    let cut: String = lines[..SAMPLES]
+        .iter()
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let twice = format!("{cut}{}\n", lines[1]);
+    refused(
+        file,
+        twice,
+        "study run study.toml --out out",
+        number(lines[1]),
+    );
+    // A shard of 39 has one sample; that of the next one is not its own.
+    let run = "study run study.toml --out out --shard 3/39";
+    let file = "out/samples-3-of-39.jsonl";
+    place.succeed(run);
+    let own = place.read(file);
+    assert_eq!(own.lines().skip(1).map(number).collect::<Vec<_>>(), [2]);
+    let of_another = lines[1..].iter().find(|line| number(line) == 3).unwrap();
+    refused(file, format!("{own}{of_another}\n"), run, 3);
+}
+
+/// Asserts that the order of samples and folders changes nothing.
+fn assert_merges_in_any_order(place: &Place) {
+    let (header, samples) = expected()[0].split_once('\n').unwrap();
+    let shard = |number: usize| {
+        let header = header.replace(
+            "{\"number\":1,\"of\":1}",
+            &format!("{{\"number\":{number},\"of\":3}}"),
+        );
+        assert_ne!(header, expected()[0].split_once('\n').unwrap().0);
+        let mut lines: Vec<&str> = samples.lines().collect();
+        lines.retain(|line| {
+            line.split([':', ','])
+                .nth(1)
+                .unwrap()
+                .parse::<usize>()
+                .unwrap()
+                % 3
+                == number - 1
+        });
+        (header, lines)
+    };
+    for (folders, is_reversed) in [("c b a", true), ("a c b", false)] {
+        for (number, folder) in (1..=3).zip(["a", "b", "c"]) {
+            let (header, mut lines) = shard(number);
+            lines.sort();
+            if is_reversed {
+                lines.reverse();
+            }
+            let _ = fs::create_dir(place.at(folder));
+            let text = format!("{header}\n{}\n", lines.join("\n"));
+            place.write(&format!("{folder}/samples-{number}-of-3.jsonl"), text);
+        }
+        place.succeed(&format!("study merge {folders} --out study.json"));
+        assert_eq!(place.read("study.json"), expected()[1], "{folders}");
+    }
 }
 
 // Verifies: STU-026, STU-027.

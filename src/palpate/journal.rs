@@ -15,7 +15,8 @@ use crate::refusal::Refusal;
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
-    file: Mutex<File>,
+    /// With the length of its whole lines.
+    file: Mutex<(File, u64)>,
 }
 
 /// The system did not let a file be opened, read, written or removed.
@@ -76,7 +77,7 @@ impl Journal {
         let refused = |found: String| Refusal::state(found, "").in_file(path.display().to_string());
         let mut options = File::options();
         options.read(true).write(true).create(true).truncate(false);
-        let mut file = options.open(&path).map_err(failed("open", &path))?;
+        let file = options.open(&path).map_err(failed("open", &path))?;
         if let Err(TryLockError::WouldBlock) = file.try_lock() {
             let found = format!("another '{command}' is writing this file; wait until it ends");
             return Err(refused(found));
@@ -86,21 +87,17 @@ impl Journal {
         let mut first = Vec::new();
         let read = reader.read_until(b'\n', &mut first);
         read.map_err(failed("read", &path))?;
-        let mut length = 0;
+        let mut whole = 0;
         if first == request.as_bytes() {
-            length = take_lines(reader, &path, 2, take)? + first.len() as u64;
+            whole = take_lines(reader, &path, 2, take)? + first.len() as u64;
         } else if !is_only_begun(&first, beginning) || has_line(reader) {
             let found =
                 "belongs to a different request or version; finish that run or delete the file";
             return Err(refused(found.into()));
         }
-        let begun = file.set_len(length);
-        let begun = begun.and_then(|()| file.seek(SeekFrom::End(0)));
-        let begun = begun.and_then(|_| match length {
-            0 => file.write_all(request.as_bytes()),
-            _ => Ok(()),
-        });
-        begun.map_err(failed("write", &path))?;
+        let begun = if whole == 0 { &*request } else { "" };
+        let mut file = (file, whole);
+        append(&mut file, begun, File::set_len, File::sync_data).map_err(failed("write", &path))?;
         let file = Mutex::new(file);
         Ok(Journal { path, file })
     }
@@ -108,23 +105,14 @@ impl Journal {
     /// Appends one finished part as one line, which is on the disk when this returns.
     ///
     /// # Errors
-    /// The file cannot be written; then nothing of the line stays in it.
+    /// The file cannot be written; what is there of the line is cut off by whoever appends or opens next.
     ///
     /// Implements: CLI-156.
     pub fn append(&self, part: &impl Serialize) -> Result<(), Refusal> {
         let line = line(part);
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut write = || {
-            let before = file.stream_position()?;
-            let written = file
-                .write_all(line.as_bytes())
-                .and_then(|()| file.sync_data());
-            written.inspect_err(|_| {
-                // The first error is the one to report.
-                let _ = file.set_len(before);
-            })
-        };
-        write().map_err(failed("write", &self.path))
+        let written = append(&mut file, &line, File::set_len, File::sync_data);
+        written.map_err(failed("write", &self.path))
     }
 
     /// Removes the file.
@@ -134,6 +122,21 @@ impl Journal {
     pub fn remove(self) -> Result<(), Refusal> {
         std::fs::remove_file(&self.path).map_err(failed("remove", &self.path))
     }
+}
+
+/// Writes `line` behind the `whole` lines of a file, counted in bytes, over what a write that failed may have left.
+fn append<F: Write + Seek>(
+    (file, whole): &mut (F, u64),
+    line: &str,
+    set_len: fn(&F, u64) -> io::Result<()>,
+    sync: fn(&F) -> io::Result<()>,
+) -> io::Result<()> {
+    set_len(file, *whole)?;
+    file.seek(SeekFrom::Start(*whole))?;
+    file.write_all(line.as_bytes())?;
+    sync(file)?;
+    *whole += line.len() as u64;
+    Ok(())
 }
 
 /// Whether `first` is the first line, or the beginning of the first line, of a journal of this kind.
@@ -146,4 +149,193 @@ fn has_line(mut reader: impl BufRead) -> bool {
     let mut bytes = Vec::new();
     let read = reader.read_until(b'\n', &mut bytes);
     read.is_err() || bytes.ends_with(b"\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use std::cell::{Cell, RefCell};
+    use std::collections::BTreeSet;
+
+    /// A file on a disk that takes so many more bytes, and whose next cut or sync fails if that is asked for.
+    struct Disk {
+        bytes: RefCell<Vec<u8>>,
+        place: usize,
+        room: usize,
+        fails: Cell<Option<Step>>,
+    }
+
+    /// What may fail of an append.
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    enum Step {
+        Cut,
+        /// The write, after so many bytes.
+        Write(usize),
+        Sync,
+    }
+
+    impl Disk {
+        fn new(bytes: Vec<u8>) -> Disk {
+            let (bytes, fails) = (RefCell::new(bytes), Cell::new(None));
+            Disk {
+                bytes,
+                place: 0,
+                room: usize::MAX,
+                fails,
+            }
+        }
+
+        fn step(&self, step: Step) -> io::Result<()> {
+            match self.fails.get() == Some(step) {
+                true => Err(io::ErrorKind::StorageFull.into()),
+                false => Ok(()),
+            }
+        }
+
+        fn set_len(&self, length: u64) -> io::Result<()> {
+            self.step(Step::Cut)?;
+            self.bytes.borrow_mut().resize(length as usize, 0);
+            Ok(())
+        }
+
+        fn sync(&self) -> io::Result<()> {
+            self.step(Step::Sync)
+        }
+
+        /// Appends a line of which the step fails.
+        fn append(file: &mut (Disk, u64), line: &str, fails: Option<Step>) -> io::Result<()> {
+            file.0.fails.set(fails);
+            file.0.room = match fails {
+                Some(Step::Write(room)) => room,
+                _ => usize::MAX,
+            };
+            super::append(file, line, Disk::set_len, Disk::sync)
+        }
+
+        /// What a process finds that opens the file: its lines, and their length.
+        fn found(&self) -> (Vec<usize>, u64) {
+            let mut lines = Vec::new();
+            let take = |line: &str| {
+                let number: usize = line
+                    .trim_end_matches('x')
+                    .parse()
+                    .map_err(|_| Refusal::state(line, ""))?;
+                lines.push(number);
+                Ok(())
+            };
+            let bytes = self.bytes.borrow();
+            let length = take_lines(&bytes[..], Path::new("f"), 1, take).unwrap();
+            (lines, length)
+        }
+    }
+
+    impl Write for Disk {
+        /// At most seven bytes at a time.
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            let count = bytes.len().min(7).min(self.room);
+            if count == 0 {
+                return Err(io::ErrorKind::StorageFull.into());
+            }
+            let (bytes, end) = (&bytes[..count], self.place + count);
+            let mut file = self.bytes.borrow_mut();
+            let length = file.len().max(end);
+            file.resize(length, 0);
+            file[self.place..end].copy_from_slice(bytes);
+            (self.place, self.room) = (end, self.room - count);
+            Ok(count)
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    impl Seek for Disk {
+        fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+            let place = match to {
+                SeekFrom::Start(place) => place as i64,
+                SeekFrom::Current(by) => self.place as i64 + by,
+                SeekFrom::End(by) => self.bytes.borrow().len() as i64 + by,
+            };
+            self.place = place as usize;
+            Ok(place as u64)
+        }
+    }
+
+    // Verifies: CLI-156, STU-024.
+    #[test]
+    fn a_line_that_was_half_written_leaves_no_hole_before_the_next() {
+        let mut file = (Disk::new(Vec::new()), 0);
+        Disk::append(&mut file, "1\n", None).unwrap();
+        for fails in [
+            Step::Write(0),
+            Step::Write(5),
+            Step::Write(8),
+            Step::Sync,
+            Step::Cut,
+        ] {
+            let told = Disk::append(&mut file, "2xxxxxxx\n", Some(fails));
+            assert_eq!(
+                told.unwrap_err().kind(),
+                io::ErrorKind::StorageFull,
+                "{fails:?}"
+            );
+            assert_eq!(file.1, 2, "{fails:?}");
+        }
+        Disk::append(&mut file, "3\n", None).unwrap();
+        assert_eq!(&file.0.bytes.borrow()[..], b"1\n3\n");
+        assert_eq!(file.1, 4);
+    }
+
+    fn fault() -> impl Strategy<Value = Option<Step>> {
+        let step = prop_oneof![
+            Just(Step::Cut),
+            (0..40usize).prop_map(Step::Write),
+            Just(Step::Sync)
+        ];
+        prop::option::of(step)
+    }
+
+    proptest! {
+        #![proptest_config(palpate_asserts::seeded(20_261_125))]
+
+        // A job of 12 parts: every process appends those that it does not find, each once; a disk fails at any step; after any
+        // part the process may be killed, and another goes on.
+        // Verifies: CLI-156, STU-024.
+        #[test]
+        fn no_part_is_lost_or_there_twice_whatever_fails(
+            faults in prop::collection::vec((fault(), any::<bool>(), 0..30usize), 40)
+        ) {
+            let mut file = (Disk::new(Vec::new()), 0);
+            let mut told = BTreeSet::new();
+            let mut faults = faults.into_iter();
+            loop {
+                let found;
+                (found, file.1) = file.0.found();
+                let there: BTreeSet<usize> = found.iter().copied().collect();
+                prop_assert_eq!(there.len(), found.len(), "twice: {:?}", found);
+                // What was told to be written is there; what is there more was whole.
+                prop_assert!(there.is_superset(&told), "{:?} {:?}", there, told);
+                told = there;
+                let left: Vec<usize> = (0..12).filter(|part| !told.contains(part)).collect();
+                if left.is_empty() {
+                    break;
+                }
+                for part in left {
+                    let (fails, is_killed, length) = faults.next().unwrap_or_default();
+                    let line = format!("{part}{}\n", "x".repeat(length));
+                    let written = Disk::append(&mut file, &line, fails);
+                    let fails = fails.filter(|step| !matches!(step, Step::Write(room) if *room >= line.len()));
+                    prop_assert_eq!(written.is_ok(), fails.is_none());
+                    if written.is_ok() {
+                        told.insert(part);
+                    }
+                    if is_killed {
+                        break;
+                    }
+                }
+            }
+        }
+    }
 }
