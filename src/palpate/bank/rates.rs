@@ -15,6 +15,11 @@ use crate::stats::tails::halved;
 /// Implements: BNK-053.
 pub const CONFIDENCE: f64 = 0.99;
 
+/// The stream of the records that judge a threshold, whatever the seed of those that set it: no bank has so many deviations.
+///
+/// Implements: BNK-054.
+const JUDGING: u64 = u64::MAX;
+
 /// A threshold of Θ_max that simulated records without inclusion set.
 ///
 /// Implements: BNK-053.
@@ -153,7 +158,7 @@ impl BankDetector {
         simulations: u64,
         seed: u64,
     ) -> Result<Bounds, DetectError> {
-        let (signal, generator) = (self.template_at(at), Generator::new(seed, 0));
+        let (signal, generator) = (self.template_at(at), Generator::new(seed, JUDGING));
         let mut found = 0;
         for trial in 0..simulations {
             found += u64::from(self.simulated_maximum(&signal, generator, trial)? >= eta);
@@ -183,7 +188,7 @@ impl BankDetector {
         in_range(simulations > 1, "simulations", number, "2 at least")?;
         let events = self.events(eta)?;
         let union = events.last().map_or(0.0, |last| last.up_to);
-        let generator = Generator::new(seed, 0);
+        let generator = Generator::new(seed, JUDGING);
         let (mut sum, mut squares) = (0.0, 0.0);
         for trial in 0..simulations {
             let share = 1.0 / self.exceeding(&events, eta, generator, trial)? as f64;

@@ -4,7 +4,7 @@ use super::*;
 use crate::detect::nuisance::SubspaceTest;
 use crate::stats::binomial::clopper_pearson;
 use crate::stats::normal;
-use crate::stats::random::Generator;
+use crate::stats::random::{Generator, uniform};
 use palpate_asserts::assert_near;
 
 /// Records whose Θ_max is at least `eta`, of so many without inclusion but with `mean`.
@@ -79,6 +79,58 @@ fn a_calibrated_threshold_counts_deviations_to_both_sides() {
     let found = alarms(&without, eta, &worst, 2, 10_000);
     let found = clopper_pearson(found, 10_000, 0.9999).unwrap();
     assert!(found.lower < 0.0565 && 0.0441 < found.upper, "{found:?}");
+}
+
+/// A bank of which nothing but the noise is seen: signals of a billionth of it.
+fn blind(deviations: &[Vec<f64>]) -> BankDetector {
+    let templates = [signal(1.0, 2.0), signal(2.0, 2.0)].map(|of| times(1e-9, &of));
+    let points = [vec![1.0, 2.0], vec![2.0], vec![1.0], vec![1.0]];
+    let (templates, known) = (templates.concat(), NoiseLevel::Known);
+    BankDetector::new(&points, templates, &[0.5; 2], vec![], deviations, known).unwrap()
+}
+
+// Of the records that set the threshold, as many exceed it as it was made for, whatever the noise; of others about as many.
+// Verifies: BNK-053, BNK-054.
+#[test]
+fn a_threshold_is_judged_on_other_records_than_those_that_set_it() {
+    let detector = blind(&[]);
+    let mut differ = 0;
+    for seed in 1..=5 {
+        let set = detector.calibrate(0.05, 4000, seed).unwrap();
+        let at = [1.0, 2.0, 1.0, 1.0];
+        let power = detector.power(set.eta, at, 4000, seed).unwrap();
+        assert!(power.lower < 0.0565 && 0.0441 < power.upper, "{power:?}");
+        differ += u32::from(power != set.false_alarm);
+    }
+    // The same count by chance comes in one of 35 seeds: 1/√(2π · 4000 · 0.05 · 0.95).
+    assert!(differ >= 3, "{differ}");
+    // Of two points without anything in common one is drawn, and where the noise along the other exceeds η too, each counts half.
+    let p = normal::upper_tail(1.6).unwrap();
+    let orthogonal = [[3.0, 0.0, 0.0], [0.0, 3.0, 0.0]].concat();
+    let two = at_positions(&[0.0, 1.0], orthogonal, &[0.5; 2]);
+    for seed in 1..=5 {
+        let found = two.rare_false_alarms(0.3, 4000, seed).unwrap().rate;
+        let generator = Generator::new(seed, 0);
+        let exceeds_too = |trial: &u64| {
+            let other = u64::from(uniform(generator.words([0, *trial, 2, 0])[0]) < 0.5);
+            generator.normal(*trial, other) >= 1.6
+        };
+        let both = (0..4000).filter(exceeds_too).count() as f64 / 4000.0;
+        differ += u32::from((found - p * (2.0 - both)).abs() > 1e-12);
+    }
+    assert!(differ >= 7, "{differ}");
+}
+
+// Verifies: BNK-053.
+#[test]
+fn each_deviation_is_calibrated_in_noise_of_its_own() {
+    // Deviations without an effect on any signal: the threshold is the largest of 21 that are drawn alike, which is that of the
+    // records without deviation in one of 21 seeds, and always if they share their noise.
+    let none = vec![vec![0.0; SAMPLES]; 10];
+    let eta = |detector: &BankDetector, seed| detector.calibrate(0.05, 400, seed).unwrap().eta;
+    let (without, with) = (blind(&[]), blind(&none));
+    let above = (1..=5).filter(|&seed| eta(&with, seed) > eta(&without, seed));
+    assert!(above.count() >= 3);
 }
 
 // Verifies: BNK-054.
