@@ -236,7 +236,7 @@ pub unsafe extern "C" fn palpate_theta_nuisances(
             theta: test.theta(),
             rates: test.rates(test.bayes_threshold(eta)?)?,
             rank: nuisances.rank(),
-            degrees: samples - 1 - nuisances.rank(),
+            degrees: found.degrees as usize,
         })
     };
     unsafe { give(found, statistic) }
