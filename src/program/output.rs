@@ -105,7 +105,9 @@ fn replace(path: &Path, text: &[u8]) -> std::io::Result<()> {
     let folder = folder.unwrap_or(Path::new("."));
     // The error about a missing folder shall not name the temporary file.
     std::fs::metadata(folder)?;
-    let (name, mut partial) = partial_file(folder)?;
+    // The keys of a hash map are random.
+    let number = RandomState::new().build_hasher().finish();
+    let (name, mut partial) = partial_file(folder, number)?;
     let mut written = partial.write_all(text);
     if let Some(there) = there {
         written = written.and_then(|()| partial.set_permissions(there.permissions()));
@@ -117,17 +119,13 @@ fn replace(path: &Path, text: &[u8]) -> std::io::Result<()> {
     })
 }
 
-/// A new file in `folder` under a name drawn at random.
-fn partial_file(folder: &Path) -> std::io::Result<(PathBuf, File)> {
-    loop {
-        // The keys of a hash map are random.
-        let number = RandomState::new().build_hasher().finish();
-        let name = folder.join(format!(".palpate-{number:016x}.partial"));
-        match File::create_new(&name) {
-            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
-            made => return Ok((name, made?)),
-        }
-    }
+/// A new file in `folder`.
+///
+/// # Errors
+/// Something of that name is there, whatever it is.
+fn partial_file(folder: &Path, number: u64) -> std::io::Result<(PathBuf, File)> {
+    let name = folder.join(format!(".palpate-{number:016x}.partial"));
+    File::create_new(&name).map(|file| (name, file))
 }
 
 /// The end of a chain of symbolic links to a file that does not exist yet.
@@ -145,4 +143,38 @@ pub fn read(path: &Path) -> Result<String, CliError> {
 /// Makes a folder and those above it.
 pub fn make_folder(path: &Path) -> Result<(), CliError> {
     std::fs::create_dir_all(path).map_err(CliError::file("make folder", path))
+}
+
+#[cfg(test)]
+#[cfg(unix)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    // Verifies: CLI-005.
+    #[test]
+    fn a_temporary_file_is_new_whatever_was_laid_under_its_name() {
+        let folder = std::env::temp_dir().join(format!("palpate-output-{}", std::process::id()));
+        make_folder(&folder).unwrap();
+        let at = |number: u64| folder.join(format!(".palpate-{number:016x}.partial"));
+        // Another's file, a link to a file, and one to what is not there, which a look for the name does not find.
+        let [victim, nowhere] = ["victim", "nowhere"].map(|name| folder.join(name));
+        std::fs::write(&victim, "untouched").unwrap();
+        std::fs::write(at(0), "untouched").unwrap();
+        symlink(&victim, at(1)).unwrap();
+        symlink(&nowhere, at(2)).unwrap();
+        for number in 0..3 {
+            let refused = partial_file(&folder, number).unwrap_err();
+            assert_eq!(refused.kind(), ErrorKind::AlreadyExists, "{number}");
+        }
+        assert!(!nowhere.exists());
+        let (name, mut file) = partial_file(&folder, 3).unwrap();
+        file.write_all(b"new").unwrap();
+        let read = |path: &Path| std::fs::read_to_string(path).unwrap();
+        assert_eq!(
+            [read(&victim), read(&at(0)), read(&name)],
+            ["untouched", "untouched", "new"]
+        );
+        std::fs::remove_dir_all(folder).unwrap();
+    }
 }
