@@ -183,6 +183,15 @@ def test_simulated_rates_are_those_of_the_law():
         assert abs(found - rate) < 5 * math.sqrt(rate * (1 - rate) / trials)
 
 
+def test_records_with_and_without_inclusion_have_noise_of_their_own():
+    _, f0, f1 = records(1, 41)
+    without, with_inclusion = (palpate.simulate_theta(f0, f1, 0.6, of, 20_000, seed=7) for of in (False, True))
+    # Five standard deviations of the correlation of independent numbers; the same noise in both makes it 1.
+    assert abs(np.corrcoef(without, with_inclusion)[0, 1]) < 5 / math.sqrt(20_000)
+    again = palpate.simulate_theta(f0, f1, 0.6, False, 20_000, seed=7)
+    assert (again == without).all() and not np.isin(without, with_inclusion).any()
+
+
 def test_the_number_of_threads_changes_nothing():
     program = (
         "import numpy as np, palpate, sys; f0 = np.ones((2, 41)); f1 = f0 + 0.01 * np.arange(82.0).reshape(2, 41);"
