@@ -199,6 +199,31 @@ fn refusals() {
 }
 
 proptest! {
+    // Verifies: NUI-001, NUI-003.
+    #[test]
+    fn only_the_space_of_the_nuisances_counts(
+        record in prop::collection::vec(-4.0..4.0, SAMPLES),
+        order in Just([0, 1, 2, 0, 1, 2]).prop_shuffle(),
+        scales in prop::array::uniform6(0.01..100.0_f64),
+        signs in prop::array::uniform6(prop::bool::ANY),
+    ) {
+        let [a, b, c, template, _] = signals();
+        let each = [a, b, c];
+        let all = (0..6).flat_map(|at| {
+            let factor = if signs[at] { scales[at] } else { -scales[at] };
+            each[order[at]].iter().map(move |value| factor * value)
+        });
+        let (mut all, mut template) = (all.collect::<Vec<f64>>(), template);
+        let nuisances = Nuisances::new(&mut all, SAMPLES).unwrap();
+        let detector = SubspaceDetector::new(nuisances, &mut template).unwrap();
+        let (found, expected) = (detector.statistic(&mut record.clone()).unwrap(), statistic(&record));
+        prop_assert_eq!((nuisances.rank(), found.degrees), (3, expected.degrees));
+        // Sums of 12 products of numbers up to 4, through three projections.
+        for (found, expected) in [(found.t, expected.t), (found.gamma, expected.gamma), (found.residual, expected.residual)] {
+            prop_assert!((found - expected).abs() < 1e-11, "{} {}", found, expected);
+        }
+    }
+
     // Verifies: NUI-003.
     #[test]
     fn no_nuisance_changes_the_statistic(

@@ -213,6 +213,48 @@ fn what_is_unknown_is_fitted_by_least_squares() {
     }
 }
 
+// Over a gel whose force is the same everywhere, another gain is another offset: it adds no amplitude.
+// Verifies: TRC-060, TRC-068, TRC-070, NUI-001.
+#[test]
+fn what_is_unknown_twice_counts_once() {
+    let flat = |signal: f64| {
+        let bump = move |x: f64| signal / (1.0 + 1e6 * x * x);
+        let laterals: Vec<f64> = (-8..=8).map(|x| 1e-3 * f64::from(x)).collect();
+        table_of(&[4e-3], &laterals, |_, x| {
+            [60.0 * x * bump(x), 1.5 + bump(x)]
+        })
+    };
+    let (without, with) = (flat(0.0), flat(0.2));
+    let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+    let record = record(without.laterals().to_vec(), |i| {
+        [(i * i % 5) as f64 / 50.0, 1.4 + (i * i % 7) as f64 / 70.0]
+    });
+    for sd in [Some(STATED), None] {
+        let judged = |unknown: &[Unknown]| {
+            let noise = noise(sd, Correlation::None);
+            let question = Question {
+                unknown,
+                noise,
+                ..question(4e-3)
+            };
+            question.judge(hypotheses, &record).unwrap()
+        };
+        let once = judged(&[Unknown::Offset]);
+        let twice = judged(&[Unknown::Offset, Unknown::Gain]);
+        // 17 samples of two forces, less two offsets and the inclusion.
+        assert_eq!([once.fit.degrees, twice.fit.degrees], [31.0; 2]);
+        for [once, twice] in [
+            [once.fit.chi_square, twice.fit.chi_square],
+            [once.fit.noise_sd.normal, twice.fit.noise_sd.normal],
+            [once.test.t, twice.test.t],
+            [once.test.gamma, twice.test.gamma],
+            [once.posterior, twice.posterior],
+        ] {
+            close(twice, once);
+        }
+    }
+}
+
 // Verifies: TRC-060, TRC-064.
 #[test]
 fn a_tolerance_of_depth_shifts_t_by_the_slope_between_the_rows_beside_it() {
