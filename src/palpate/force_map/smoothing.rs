@@ -115,9 +115,10 @@ mod tests {
     use super::*;
     use palpate_asserts::assert_near;
 
+    /// These normal forces, and lateral ones of twice their size to the other side.
     fn table(laterals: &[f64], normal: &[f64]) -> ForceTable {
         let matrix = |sign: f64| Matrix::from_fn(1, laterals.len(), |_, at| sign * normal[at]);
-        let forces = Force::new(matrix(-1.0), matrix(1.0));
+        let forces = Force::new(matrix(-2.0), matrix(1.0));
         ForceTable::new(vec![0.004], laterals.to_vec(), forces).unwrap()
     }
 
@@ -144,7 +145,7 @@ mod tests {
                 .map(|of| of.values()[at]);
             // Weights of a few units times forces below 10 N, each rounded some ten times.
             assert_near(normal, expected, 1e-13);
-            assert!((lateral + expected).abs() < 1e-13, "{at}: {lateral}");
+            assert_near(lateral, -2.0 * expected, 2e-13);
         }
         // Of the windows at either end the weights are 31/35, 13/35, and 17/35 in each of the five middle ones.
         let free = 9.0 - (2.0 * 31.0 + 2.0 * 13.0 + 5.0 * 17.0) / 35.0;
@@ -153,10 +154,8 @@ mod tests {
             .map(|(f, e)| (f - e) * (f - e))
             .sum();
         let sd = (squares / free).sqrt();
-        assert!(
-            (found.noise_sd.normal - sd).abs() < 1e-13
-                && (found.noise_sd.lateral - sd).abs() < 1e-13
-        );
+        assert_near(found.noise_sd.normal, sd, 1e-13);
+        assert_near(found.noise_sd.lateral, 2.0 * sd, 2e-13);
     }
 
     // Verifies: MAP-070.

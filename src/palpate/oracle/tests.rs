@@ -1,6 +1,7 @@
 use std::cell::RefCell;
 use std::io::{self, Read, Write};
 
+use super::answer::{Code, answer, json};
 use super::{Oracle, serve};
 
 /// Gives its bytes out in pieces of a size, and checks before each that all whole lines so far were
@@ -62,6 +63,28 @@ fn lines_are_found_however_the_input_is_cut() {
         let is_right = output.borrow().as_slice() == expected.as_bytes();
         assert!(is_right, "pieces of {size}");
     }
+}
+
+// Verifies: ORA-008, ORA-009.
+// The keys of an answer are the names of its types.
+#[allow(non_camel_case_types)]
+#[test]
+fn no_answer_holds_a_number_that_is_not_finite_however_deep_it_lies() {
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let outcomes = [
+            json(answer! { first: 1.0, bad: bad }),
+            json(answer! { first: 1.0, bad: [1.0, bad] }),
+            json(answer! { first: 1.0, bad: [vec![0.0], vec![1.0, bad]], last: 1.0 }),
+            json(answer! { first: 1.0, bad: [[[bad]]] }),
+            json(answer! { first: [1.0], inner: answer! { bad: [Some(bad)] } }),
+        ];
+        for outcome in outcomes {
+            let refused = outcome.unwrap_err();
+            assert_eq!(refused.code, Code::Overflow);
+            assert_eq!(refused.message, "bad would not be a finite number");
+        }
+    }
+    assert!(json(answer! { a: [[f64::MAX, -0.0]], b: f64::MIN_POSITIVE }).is_ok());
 }
 
 // Verifies: ORA-001. A walk through what a line may be: cut, doubled, with bytes changed.

@@ -196,6 +196,51 @@ fn reports_passed_over_and_reports_that_never_came_are_counted_apart() {
     }
 }
 
+// Verifies: HID-013.
+#[test]
+fn reports_that_never_came_are_counted_where_the_numbers_begin_again() {
+    // The device begins at 65 526; the first report that comes after 20 lost ones has a number of 0 to 30.
+    for lost in [1, 9, 10, 11, 20] {
+        let faults = vec![
+            (MS, Defect::SequenceBack(11)),
+            (5 * MS, Defect::ClockJump(lost * MS)),
+        ];
+        let mut session = begin(ideal(faults));
+        session.run(|_, counters| counters.cycles < 40);
+        let counters = session.counters();
+        assert_eq!(
+            (counters.skipped, counters.missed),
+            (lost.into(), 1),
+            "{lost}"
+        );
+    }
+}
+
+// Verifies: CLI-065.
+#[test]
+fn counters_have_the_same_keys_whatever_they_count() {
+    let keys = |counters: Counters| {
+        let json = serde_json::to_value(counters).unwrap();
+        json.as_object()
+            .unwrap()
+            .keys()
+            .cloned()
+            .collect::<Vec<_>>()
+    };
+    let expected = "cycles garbage missed passed_over played skipped stops_refused";
+    let one = Counters {
+        cycles: 1,
+        played: 1,
+        missed: 1,
+        skipped: 1,
+        passed_over: 1,
+        garbage: 1,
+        stops_refused: 1,
+    };
+    assert_eq!(keys(one).join(" "), expected);
+    assert_eq!(keys(Counters::default()).join(" "), expected);
+}
+
 // Verifies: HID-020.
 #[test]
 fn the_device_drops_its_force_by_itself_and_keeps_the_oldest_reports() {
