@@ -19,16 +19,18 @@ fn a_plan_is_balanced_mixed_and_drawn_from_its_seed() {
 #[test]
 fn every_order_and_every_side_comes_as_often_as_it_should() {
     // Three pairs of as many inclusions have 6 orders, and 8 patterns of sides.
-    let (mut orders, mut sides) = ([0u64; 27], [0u64; 8]);
+    let (mut orders, mut sides, mut both) = ([0u64; 27], [0u64; 8], [0u64; 27 * 8]);
     let seeds = 24_000;
     for seed in 0..seeds {
         let pairs = plan(seed, 3, 1);
         let number = |base: usize, digit: &dyn Fn(&Trial) -> usize| {
             pairs.iter().fold(0, |sum, trial| base * sum + digit(trial))
         };
-        orders[number(3, &|trial| trial.inclusion)] += 1;
         let is_first = |trial: &Trial| usize::from(trial.with_inclusion == Interval::First);
-        sides[number(2, &is_first)] += 1;
+        let (order, side) = (number(3, &|trial| trial.inclusion), number(2, &is_first));
+        orders[order] += 1;
+        sides[side] += 1;
+        both[8 * order + side] += 1;
     }
     // Six standard deviations of a binomial count: 2e-9 each.
     let near = |count: u64, share: f64| {
@@ -44,6 +46,9 @@ fn every_order_and_every_side_comes_as_often_as_it_should() {
         .chain(sides.map(|n| (n, 8.0)));
     let holds = counts.all(|(count, of)| near(count, 1.0 / of));
     assert!(holds, "{orders:?} {sides:?}");
+    // Who knows the sides does not know the order.
+    let mut both = both.into_iter().filter(|&count| count > 0);
+    assert!(both.clone().count() == 48 && both.all(|count| near(count, 1.0 / 48.0)));
 }
 
 mod observer {

@@ -116,6 +116,35 @@ fn each_sample_has_one_role_and_the_points_fill_the_unit_cube_evenly() {
     assert_eq!(at(Role::Slope(1, 0)), [0.5, 0.25, 0.5, 0.5]);
 }
 
+// The sequence has 2¹⁶ points: what follows is another scrambling of it, as even and with no point again.
+// Verifies: STU-020.
+#[test]
+fn rows_beyond_the_sequence_are_points_of_their_own() {
+    let rows = u32::MAX as usize;
+    let design = Design::new(&NAMES[..1], &[], rows, 5).unwrap();
+    assert_eq!(design.samples(), 3 + 2 + 3 * rows);
+    let of = |row: usize| {
+        let sample = 3 + 2 + 3 * row;
+        assert_eq!(design.role(sample), Role::First(row));
+        design.probabilities(sample)[0]
+    };
+    let block = |from: usize| (from..from + 256).map(of).collect::<Vec<_>>();
+    let last = rows - 255;
+    let blocks = [0, 1 << 16, 2 << 16, 1 << 31, last & !255].map(block);
+    let mut cells = [[0; 256]; 5];
+    for (block, cells) in blocks.iter().zip(&mut cells) {
+        block.iter().for_each(|p| cells[(p * 256.0) as usize] += 1);
+    }
+    assert_eq!(&cells[..4], [[1; 256]; 4]);
+    let mut all = blocks.concat();
+    all.sort_by(f64::total_cmp);
+    // Two of 2²³ cells drawn 1280 times are the same once in ten draws, of a block that came again 256 times.
+    assert!(all.windows(2).filter(|pair| pair[0] == pair[1]).count() < 4);
+    let end = design.samples() - 1;
+    assert_eq!(design.role(end), Role::Mixed(rows - 1, 0));
+    assert!(Design::new(&NAMES[..1], &[], rows + 1, 5).is_err());
+}
+
 // Verifies: STU-012.
 #[test]
 fn correlated_inputs_have_normal_scores_of_that_correlation() {
@@ -298,6 +327,45 @@ fn the_medians_are_solved_on_three_meshes() {
         let found = sampler.sample(sample).unwrap();
         // 4/3 and 3/2 of a mesh size round.
         assert!((found[0] - map.table().forces().normal.row(0)[0]).abs() < 1e-9);
+    }
+}
+
+// Verifies: STU-031.
+#[test]
+fn what_rests_on_the_noise_takes_that_of_the_sample() {
+    let mut plan = plan(vec![near("noise", NOISE_SD, 1.0)]);
+    (plan.mesh_size, plan.settings.noise_sd_n) = (2e-3, 0.2);
+    plan.inputs[0].distribution = uniform(0.1, 0.5);
+    let sampler = Sampler::new(&plan).unwrap();
+    let place = |kind: Kind| {
+        let mut quantities = sampler.quantities().iter();
+        quantities.position(|of| of.kind == kind).unwrap()
+    };
+    let kinds = [
+        Kind::PeakNormalN,
+        Kind::TwoAfcByPeak,
+        Kind::Gamma,
+        Kind::TwoAfc,
+        Kind::NeededNoiseSdN,
+    ];
+    let places = kinds.map(place);
+    // The quartiles of the noise: the forces are the same.
+    let of = |sample| {
+        let values = sampler.sample(sample).unwrap();
+        let [noise] = sampler.inputs(sample)[..] else {
+            panic!("one input")
+        };
+        (noise, places.map(|place| values[place]))
+    };
+    let ((low, of_low), (high, of_high)) = (of(3), of(4));
+    assert_near(low, 0.2, 1e-15);
+    assert_near(high, 0.4, 1e-15);
+    for (noise, [peak, by_peak, gamma, pairs, needed]) in [(low, of_low), (high, of_high)] {
+        let right = |gamma: f64| palpate::stats::normal::cdf(gamma / 2.0_f64.sqrt()).unwrap();
+        assert_near(by_peak, right(peak / noise), 1e-12);
+        assert_near(pairs, right(gamma), 1e-12);
+        assert_near(gamma * noise, of_low[2] * low, 1e-12);
+        assert_near(needed, of_low[4], 1e-12);
     }
 }
 

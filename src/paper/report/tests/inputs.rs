@@ -30,6 +30,20 @@ fn with_study() -> Run {
     }
 }
 
+/// A run of one inclusion with the medians and slopes of a study of it.
+pub fn with_slopes() -> Run {
+    let mut run = paper_run();
+    run.maps = vec![run.maps.swap_remove(2)];
+    let mut plan = plan(vec![
+        near("gel: modulus", "layer[1].youngs_modulus_kpa", 5.0),
+        near("gel: height", "layer[1].thickness_mm", 15.0),
+    ]);
+    plan.laterals = LATERALS.into();
+    (plan.mesh_size, plan.settings) = (3e-3, SETTINGS);
+    run.study = Some(results(&plan, 3 + 2 * 2));
+    run
+}
+
 // Verifies: REP-081, REP-083.
 #[test]
 fn a_study_stands_beside_the_numbers_of_the_run() {
@@ -74,6 +88,25 @@ fn a_study_stands_beside_the_numbers_of_the_run() {
     // Of the two inputs the modulus counts more in the force: 0.9 against 0.3 per cent per per cent.
     let drawn = "none: normal force at 0.0 mm, N: gel: <modulus> 3.6 %, gel: height −1.";
     assert_has(&made.figure("inputs").alt, drawn);
+}
+
+// Verifies: REP-081.
+#[test]
+fn the_longest_bar_is_on_top_to_whichever_side_it_goes() {
+    let mut run = with_slopes();
+    let study = run.study.as_mut().unwrap();
+    let gel = Kind::NormalForceN { lateral_m: 0.0 };
+    let mut quantities = study.quantities.iter_mut();
+    let of = quantities
+        .find(|of| of.quantity.phantom == "none" && of.quantity.kind == gel)
+        .unwrap();
+    // Of a force of 1 N; the second goes down by more than the first goes up.
+    of.at_medians = Some(1.0);
+    for (slope, change) in of.slopes.iter_mut().zip([0.05, -0.2]) {
+        slope.as_mut().unwrap().between_quartiles = change;
+    }
+    let drawn = "none: normal force at 0.0 mm, N: gel: height −20.0 %, gel: modulus 5.0 %";
+    assert_has(&made(&run).figure("inputs").alt, drawn);
 }
 
 // Verifies: REP-081.

@@ -139,6 +139,41 @@ fn the_page_needs_nothing_else() {
     }
 }
 
+// Verifies: REP-042.
+#[test]
+fn a_name_is_text_wherever_it_stands() {
+    // Where any of these pairs of letters stands in the page or a figure, something between them was not escaped.
+    let name = "q<w&q\"w'q";
+    let mut run = super::inputs::with_slopes();
+    let named = |signal: f64| map_with(name, move |_| signal, |_| 0.0);
+    // Without a signal there is a warning.
+    run.maps.extend([named(0.1), named(0.0)]);
+    run.measured = vec![named(0.1)];
+    let phantom = &run.deformed.phantom;
+    run.deformed.phantom = phantom.changed(|parts| parts.name = name.into()).unwrap();
+    let study = run.study.as_mut().unwrap();
+    study.plan.inputs[0].name = name.into();
+    study.plan.inputs[0].source = name.into();
+    study.groups[0][0] = name.into();
+    let made = made(&run);
+    let texts = made
+        .figures
+        .iter()
+        .map(|figure| &figure.svg)
+        .chain([&made.page]);
+    for text in texts {
+        for pair in ["q<w", "w&q", "q\"w", "w'q"] {
+            assert!(
+                !text.contains(pair),
+                "{pair} in {}",
+                &text[text.find(pair).unwrap_or(0)..][..200]
+            );
+        }
+    }
+    let warned = "<strong>Phantom q&#60;w&#38;q&#34;w&#39;q.</strong> No signal";
+    assert_has(&made.page.replace('\u{a0}', " "), warned);
+}
+
 // Verifies: REP-041.
 #[test]
 fn the_page_holds_everything() {
