@@ -38,6 +38,28 @@ fn a_tolerance_ends_where_it_says() {
     assert!(Limit::stated(Tolerance::Ulp(1.0), 10.0).accepts(1.0, one_up.next_up()));
 }
 
+// Verifies: VEC-004, ORA-046.
+#[test]
+fn each_number_of_a_list_has_its_own_tolerance() {
+    for (tolerance, allowed) in [
+        (Tolerance::Ulp(2.0), 2.0 * f64::EPSILON),
+        (Tolerance::Relative(1e-9), 1e-9),
+    ] {
+        for at in 0..3 {
+            // Powers of two, whose ulp is ε times them.
+            let expected = [1024.0, 1.0, 1.0 / 1024.0];
+            let off_by = |factor: f64| {
+                let mut found = expected;
+                found[at] += factor * allowed * found[at];
+                let lists = [json!([expected, expected]), json!([expected, found])];
+                compare("k", &lists[0], &lists[1], Limit::stated(tolerance, 1.0))
+            };
+            assert_eq!(off_by(0.5), Ok(()));
+            assert_eq!(off_by(2.0).unwrap_err().place, format!("k[1][{at}]"));
+        }
+    }
+}
+
 // Verifies: ORA-046.
 #[test]
 fn a_difference_names_its_place() {
