@@ -15,6 +15,21 @@ fn a_plan_is_balanced_mixed_and_drawn_from_its_seed() {
     assert!((0..8).any(|at| pairs[at].inclusion != at % 4));
 }
 
+// Philox in integers of Python, which gives the known answer 0x16554d9eca36314c for a counter and a key of zeros.
+// Verifies: PSY-001, PSY-003.
+#[test]
+fn an_experiment_that_was_begun_keeps_its_plan() {
+    let expected = "11 21 31 21 01 11 01 02 31 31 12 22";
+    let pairs = plan(1999, 4, 3).into_iter().map(|trial| {
+        let place = match trial.with_inclusion {
+            Interval::First => 1,
+            Interval::Second => 2,
+        };
+        format!("{}{place}", trial.inclusion)
+    });
+    assert_eq!(pairs.collect::<Vec<_>>().join(" "), expected);
+}
+
 // Verifies: PSY-001.
 #[test]
 fn every_order_and_every_side_comes_as_often_as_it_should() {

@@ -162,7 +162,10 @@ proptest! {
         // Everything elsewhere, and in a mirror.
         assert_same(&case.changed(|x| x + 1e-3 * shift, Force::new(1.0, 1.0)).judged(&unknown), &expected);
         assert_same(&case.changed(|x| -x, Force::new(-1.0, 1.0)).judged(&unknown), &expected);
-        // A drift has an order.
+        // A drift goes as far up as down.
+        let reversed: Vec<usize> = (0..40).rev().collect();
+        assert_same(&case.of(&reversed).judged(&unknown), &expected);
+        // It has an order.
         if !unknown.contains(&Unknown::Drift) {
             let turned: Vec<usize> = (turn..40).chain(0..turn).collect();
             assert_same(&case.of(&turned).judged(&unknown), &expected);
