@@ -346,6 +346,33 @@ fn an_output_that_was_there_keeps_its_links_its_mode_and_its_neighbours() {
     assert!(left.eq(expected.map(PathBuf::from)));
 }
 
+// Verifies: CLI-003, CLI-005.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_told_and_leaves_the_old_file_as_it_was() {
+    let here = Place::new("full");
+    here.write("old.vtu", "old");
+    for kilobytes in [0, 8] {
+        // A file that grows beyond it ends as on a full disk: part of it is written, and then nothing.
+        let line = format!(
+            "trap '' XFSZ; ulimit -f {kilobytes}; exec \"$0\" {}",
+            quick_vtu("old.vtu")
+        );
+        let mut command = Command::new("bash");
+        command
+            .current_dir(here.at(""))
+            .args(["-c", &line, crate::program::PROGRAM]);
+        let output = command.output().unwrap();
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        assert!(said.starts_with("palpate: write old.vtu: "), "{said}");
+        let left = contents(&here.at(""));
+        assert_eq!(left, [("old.vtu".into(), b"old".to_vec())]);
+    }
+    here.succeed(&quick_vtu("old.vtu"));
+    assert!(here.read("old.vtu").len() > 8 << 10);
+}
+
 // Verifies: CLI-005.
 #[cfg(unix)]
 #[test]

@@ -288,6 +288,23 @@ mod tests {
         assert_eq!(file.1, 4);
     }
 
+    // Verifies: CLI-157.
+    #[test]
+    fn lines_are_counted_beyond_16_bits() {
+        let text = "1\n".repeat(1 << 16) + "not one\nrest";
+        let mut taken = 0;
+        let refused = take_lines(text.as_bytes(), Path::new("f"), 2, |line| {
+            taken += 1;
+            Refusal::state("wrong", "").when(line != "1")
+        });
+        assert_eq!(
+            (refused.unwrap_err().to_string(), taken),
+            ("f:65538: wrong".into(), 65_537)
+        );
+        let whole = take_lines(text.as_bytes(), Path::new("f"), 1, |_| Ok(())).unwrap();
+        assert_eq!(whole, 2 * 65_536 + 8);
+    }
+
     fn fault() -> impl Strategy<Value = Option<Step>> {
         let step = prop_oneof![
             Just(Step::Cut),

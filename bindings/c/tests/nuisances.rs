@@ -4,6 +4,37 @@ use std::mem::MaybeUninit;
 
 use palpate_c::{Error, NuisanceStatistic, palpate_theta_nuisances};
 
+// Verifies: CLB-003.
+#[test]
+fn a_length_beyond_all_memory_is_refused() {
+    let mut number = [0.0];
+    let start = number.as_mut_ptr();
+    let half = usize::MAX / 2 + 1;
+    for (samples, count) in [
+        (half, 2),
+        (2, half),
+        (1 << 33, 1 << 31),
+        (usize::MAX, usize::MAX),
+    ] {
+        let mut found = MaybeUninit::uninit();
+        // SAFETY: nothing is read of lists whose length is refused.
+        let error = unsafe {
+            palpate_theta_nuisances(
+                start,
+                start,
+                samples,
+                start,
+                count,
+                1,
+                0.0,
+                0.0,
+                found.as_mut_ptr(),
+            )
+        };
+        assert_eq!(error, Error::Length, "{samples} {count}");
+    }
+}
+
 /// The statistic of a record of six samples beside these nuisances, in noise of standard deviation 1.
 fn statistic(mut nuisances: Vec<f64>) -> NuisanceStatistic {
     let (mut residual, mut template) = (

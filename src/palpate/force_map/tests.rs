@@ -322,6 +322,29 @@ fn forces_at_a_stored_depth() {
     assert!(table.row(0.001 + 1.1e-9).is_err() && table.row(f64::NAN).is_err());
 }
 
+// Verifies: MAP-060, MAP-070.
+#[test]
+fn a_table_may_be_longer_than_16_bits_count() {
+    let count = (1 << 16) + 3;
+    let laterals: Vec<f64> = (0..count).map(|at| 1e-6 * at as f64).collect();
+    let of = |row: usize, column: usize| (row * count + column) as f64;
+    let forces = Force::new(
+        Matrix::from_fn(2, count, of),
+        Matrix::from_fn(2, count, |_, at| -of(0, at)),
+    );
+    let table = ForceTable::new(vec![0.0, 1e-3], laterals.clone(), forces).unwrap();
+    for at in [0, 65_534, 65_535, 65_536, count - 1] {
+        let expected = Force::new(of(1, at), -of(0, at));
+        assert_eq!(table.force(1e-3, laterals[at]).unwrap(), expected);
+        let swept = table.sweep(1e-3, &[laterals[at]]).unwrap();
+        assert_eq!(swept.map(|of| of[0]), expected);
+        // A straight line is what smoothing leaves.
+        let smoothed = table.smoothed(3e-6).unwrap().table;
+        let line = smoothed.forces().normal.row(0)[at];
+        assert!((line - expected.normal).abs() < 1e-9, "{at}: {line}");
+    }
+}
+
 proptest! {
     #![proptest_config(seeded(3))]
 

@@ -280,3 +280,58 @@ fn difference(one: &Value, other: &Value) -> Option<String> {
     });
     Some(inner.unwrap_or_default().trim_end_matches('.').into())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Verifies: STU-024.
+    #[test]
+    fn each_sample_has_one_shard_whatever_their_numbers() {
+        for of in [
+            1,
+            2,
+            3,
+            (1 << 16) + 1,
+            (1 << 32) - 1,
+            (1 << 32) + 1,
+            usize::MAX,
+        ] {
+            for sample in [
+                0,
+                1,
+                65_535,
+                65_536,
+                65_537,
+                (1 << 32) - 1,
+                1 << 32,
+                usize::MAX - 1,
+            ] {
+                let shard = |number| Shard { number, of };
+                let own = sample % of + 1;
+                assert!(shard(own).has(sample), "{sample} of {of}");
+                let mut others = [1, 2, of / 2, of - 1, of].into_iter();
+                assert!(!others.any(|number| (1..=of).contains(&number)
+                    && number != own
+                    && shard(number).has(sample)));
+            }
+        }
+        let most = usize::MAX;
+        let parsed = Shard::parse(&format!("{most}/{most}"));
+        assert_eq!(
+            parsed,
+            Ok(Shard {
+                number: most,
+                of: most
+            })
+        );
+        for wrong in [
+            format!("1/{most}0"),
+            format!("{most}/1"),
+            "0/0".into(),
+            "-1/2".into(),
+        ] {
+            assert!(Shard::parse(&wrong).is_err(), "{wrong}");
+        }
+    }
+}

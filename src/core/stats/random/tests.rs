@@ -48,6 +48,29 @@ fn a_deviate_is_a_function_of_its_address() {
     assert_ne!(Generator::new(8, 3).normal(11, 0), all[0]);
 }
 
+// Verifies: DET-110, DET-111.
+#[test]
+fn no_part_of_an_address_is_cut() {
+    let ends = [16, 32, 63].map(|bits| 1_u64 << bits);
+    let mut numbers: Vec<u64> = ends
+        .iter()
+        .flat_map(|end| [end - 1, *end, end + 1])
+        .collect();
+    numbers.extend([0, 1, 2, u64::MAX]);
+    let parts: [&dyn Fn(u64) -> f64; 4] = [
+        &|seed| Generator::new(seed, 1).normal(1, 1),
+        &|stream| Generator::new(1, stream).normal(1, 1),
+        &|trial| Generator::new(1, 1).normal(trial, 1),
+        &|index| Generator::new(1, 1).normal(1, index),
+    ];
+    for (at, part) in parts.iter().enumerate() {
+        let mut found: Vec<f64> = numbers.iter().map(|number| part(*number)).collect();
+        found.sort_by(f64::total_cmp);
+        // Of 53 bits, two of 13 are the same once in 10¹⁴.
+        assert!(found.is_sorted_by(|a, b| a < b), "part {at}: {found:?}");
+    }
+}
+
 // Verifies: DET-110.
 #[test]
 fn ziggurat_has_layers_of_equal_area_under_the_curve() {

@@ -144,3 +144,24 @@ fn what_no_detector_can_be_made_of_is_refused() {
     assert!(found.statistic(&mut [0.0; 2]).is_err());
     assert!(found.statistic(&mut [0.0, f64::NAN, 0.0]).is_err());
 }
+
+// Verifies: BNK-031.
+#[test]
+fn a_bank_may_have_more_points_than_16_bits_count() {
+    let count = (1 << 16) + 1;
+    let positions: Vec<f64> = (0..count).map(|at| 1e-6 * at as f64).collect();
+    let mut templates = [1.0, 0.0, 0.0].repeat(count);
+    // The last of all, and the one that a number of 16 bits would take it for.
+    templates[3 * (count - 1)..].copy_from_slice(&[0.0, 3.0, 0.0]);
+    templates[..3].copy_from_slice(&[0.0, 0.0, 2.0]);
+    let detector = at_positions(&positions, templates, &vec![1.0 / count as f64; count]);
+    let statistic = detector.statistic(&mut [0.0, 3.0, 0.0]).unwrap();
+    assert_eq!(statistic.theta.len(), count);
+    let likeliest = detector.likeliest(&statistic);
+    assert_eq!(likeliest, count - 1);
+    // γ²/2 of it.
+    assert_eq!(
+        (statistic.theta[likeliest], statistic.theta[0]),
+        (4.5, -2.0)
+    );
+}

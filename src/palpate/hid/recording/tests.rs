@@ -131,3 +131,19 @@ fn what_is_no_recording_is_refused_with_its_line() {
     });
     assert_error(Recording::parse(""), "line 1: \"\"; give a recording[..]");
 }
+
+// Verifies: HID-050, HID-052.
+#[test]
+fn a_recording_may_have_more_cycles_than_16_bits_count() {
+    let mut recording = recording();
+    recording.cycles = cycles(probing(500 * MS, vec![]), 65_540);
+    let last = recording.cycles.len() - 1;
+    assert_eq!(last, 65_539);
+    let text = recording.to_text();
+    assert_eq!(Recording::parse(&text).as_ref(), Ok(&recording));
+    assert_eq!(recording.replay(table(3.2)), Ok(65_540));
+    // What differs is named by its cycle.
+    recording.cycles[last].force.lateral ^= 1;
+    let error = recording.replay(table(3.2)).unwrap_err().to_string();
+    assert!(error.starts_with("cycle 65539: "), "{error}");
+}

@@ -136,6 +136,43 @@ fn assert_same(found: &Judgement, expected: &Judgement) {
     }
 }
 
+// Verifies: TRC-001, TRC-020.
+#[test]
+fn a_record_may_be_longer_than_16_bits_count() {
+    let count = (1 << 16) + 1;
+    let row = |i: usize| format!("{},0,{}\n", i as f64 / 65_536.0, 1.0 + (i % 2) as f64);
+    let head = "position_mm,lateral_force_n,normal_force_n\n".to_string();
+    let text = head + &(0..count).map(row).collect::<String>();
+    let record = read(&text).unwrap();
+    assert_eq!(
+        (record.positions().len(), record.positions()[count - 1]),
+        (count, 1e-3)
+    );
+    let level = |signal: f64| table_of(&[4e-3], &[0.0, 1e-3], |_, _| [0.0, 1.0 + signal]);
+    let (without, with) = (level(0.0), level(0.125));
+    let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+    let noise_sd = Force::new(0.5, 0.5);
+    let noise = Noise {
+        sd: Some(noise_sd),
+        correlation: Correlation::None,
+    };
+    let found = Question {
+        noise,
+        ..question(4e-3)
+    }
+    .judge(hypotheses, &record)
+    .unwrap();
+    // Each sample has a signal of a quarter of its noise; every second one, from the second on, is 1 N above the level.
+    assert_eq!(found.fit.degrees, 2.0 * count as f64 - 1.0);
+    close(found.test.gamma, (count as f64).sqrt() / 4.0);
+    close(
+        found.test.theta(),
+        32_768.0 * 2.0 / 4.0 - count as f64 / 32.0,
+    );
+    let error = read(&format!("{text}0.5,none,1\n")).unwrap_err();
+    assert!(error.starts_with("t.csv:65539:"), "{error}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 32, ..seeded(20_261_125) })]
 
