@@ -1,5 +1,5 @@
 //! Bugs planted in a copy of the sources, one at a time: for each, the harness that it names must
-//! fail. `cargo test --release -p palpate-proofs --test defects -- --ignored`.
+//! fail. `cargo test --release -p palpate-proofs --test defects -- --ignored`. And bugs of people, which the tests that they name found.
 #![cfg(not(any(kani, fuzzing)))]
 
 #[path = "defects/list.rs"]
@@ -9,7 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use list::{Defect, defects};
+use list::{Defect, defects, of_people};
 
 /// The packages that the harnesses see.
 const PACKAGES: [&str; 4] = ["src/core", "bindings/c", "proofs", "tests/asserts"];
@@ -102,4 +102,54 @@ fn each_planted_defect_is_found_by_its_harness() {
         }
     }
     assert_eq!(missed, [""; 0], "not found by the harness that they name");
+}
+
+/// The sources below a folder, as one text.
+fn sources(folder: &Path) -> String {
+    let mut text = String::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            text += &sources(&path);
+        } else if path
+            .extension()
+            .is_some_and(|end| end == "rs" || end == "py")
+        {
+            text += &fs::read_to_string(path).unwrap();
+        }
+    }
+    text
+}
+
+#[test]
+fn each_defect_of_people_has_its_place_and_its_test() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let folders = [
+        "src",
+        "tests",
+        "vectors/conform",
+        "bindings/c",
+        "bindings/python",
+    ];
+    let tests = folders.map(|folder| sources(&root.join(folder))).concat();
+    for Defect {
+        name,
+        file,
+        edit: [from, to],
+        found_by,
+    } in of_people()
+    {
+        let found = fs::read_to_string(root.join(file))
+            .unwrap()
+            .matches(&from)
+            .count();
+        assert!(
+            found == 1 && from != to,
+            "{name}: {file} must have once: {from}"
+        );
+        let is_there = ["fn", "def"]
+            .iter()
+            .any(|word| tests.contains(&format!("{word} {found_by}(")));
+        assert!(is_there, "{name}: no test {found_by}");
+    }
 }

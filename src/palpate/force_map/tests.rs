@@ -345,6 +345,73 @@ fn a_table_may_be_longer_than_16_bits_count() {
     }
 }
 
+/// A table over two depths and these positions of the forces, lateral and normal, at each of 18 poses.
+fn of_poses(laterals: &[f64], forces: &[[f64; 2]]) -> ForceTable {
+    let matrix =
+        |which: usize| Matrix::from_fn(2, 9, |row, column| forces[9 * row + column][which]);
+    ForceTable::new(
+        vec![1e-3, 3e-3],
+        laterals.into(),
+        Force::new(matrix(0), matrix(1)),
+    )
+    .unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..seeded(20_261_125) })]
+
+    // Verifies: MAP-060, MAP-070, MAP-073.
+    #[test]
+    fn forces_between_poses_and_smoothed_ones_add_up_move_and_have_mirror_images(
+        steps in prop::collection::vec(0.5e-3..1e-3, 8),
+        one in prop::collection::vec(prop::array::uniform2(-2.0..2.0), 18),
+        other in prop::collection::vec(prop::array::uniform2(-2.0..2.0), 18),
+        (depth, at, shift) in (0.0..5e-3, 0.0..1.0, -2e-3..2e-3),
+    ) {
+        let laterals = axis(-3e-3, &steps);
+        let lateral = laterals[0] - 1e-4 + at * 6e-3;
+        let table = of_poses(&laterals, &one);
+        let second = of_poses(&laterals, &other);
+        let pairs = std::iter::zip(&one, &other);
+        let sum: Vec<_> = pairs.map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect();
+        let sum = of_poses(&laterals, &sum);
+        let moved: Vec<f64> = laterals.iter().map(|x| x + shift).collect();
+        let moved = of_poses(&moved, &one);
+        let columns: Vec<usize> = (0..9).rev().collect();
+        let image = table.mirror_image(&columns);
+        // Of a pose: cells are continued by less than four of their widths, where numbers below 2 are some 30 at most.
+        let force = |table: &ForceTable, x| table.force(depth, x).unwrap().into_array();
+        let near = |a: f64, b: f64| (a - b).abs() < 1e-11;
+        let (found, added) = (force(&table, lateral), force(&second, lateral));
+        let (whole, away) = (force(&sum, lateral), force(&moved, lateral + shift));
+        let [along, up] = force(&image, -lateral);
+        for channel in 0..2 {
+            prop_assert!(near(found[channel] + added[channel], whole[channel]));
+            prop_assert!(near(found[channel], away[channel]));
+            prop_assert!(near(found[channel], [-along, up][channel]));
+        }
+        // Of a window of four positions at least.
+        let smoothed = |table: &ForceTable| table.smoothed(2.1e-3).unwrap();
+        let [found, added, whole, away, image] = [&table, &second, &sum, &moved, &image].map(smoothed);
+        let value = |of: &Smoothed, row: usize, column: usize| {
+            of.table.forces().as_ref().map(|of| of.row(row)[column]).into_array()
+        };
+        for (row, column) in (0..18).map(|at| (at / 9, at % 9)) {
+            let [lateral, normal] = value(&found, row, column);
+            let [along, up] = value(&added, row, column);
+            let [x, y] = value(&away, row, column);
+            prop_assert!(near(lateral, x) && near(normal, y));
+            let [x, y] = value(&whole, row, column);
+            prop_assert!(near(lateral + along, x) && near(normal + up, y));
+            let [x, y] = value(&image, row, 8 - column);
+            prop_assert!(near(lateral, -x) && near(normal, y));
+        }
+        for (a, b) in std::iter::zip(found.noise_sd.into_array(), image.noise_sd.into_array()) {
+            prop_assert!(near(a, b));
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(seeded(3))]
 

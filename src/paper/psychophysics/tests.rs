@@ -66,6 +66,49 @@ fn every_order_and_every_side_comes_as_often_as_it_should() {
     assert!(both.clone().count() == 48 && both.all(|count| near(count, 1.0 / 48.0)));
 }
 
+/// Asserts that two documents have the same keys and texts, and numbers that differ by rounding alone.
+fn assert_alike(one: &serde_json::Value, other: &serde_json::Value, place: &str) {
+    use serde_json::Value::{Array, Number, Object};
+    match (one, other) {
+        (Number(a), Number(b)) => {
+            let [a, b] = [a, b].map(|number| number.as_f64().unwrap());
+            // Searches end where a likelihood is flat to 1e-9 of it.
+            assert!((a - b).abs() <= 1e-6 * a.abs() + 1e-12, "{place}: {a} {b}");
+        }
+        (Array(a), Array(b)) if a.len() == b.len() => {
+            let pairs = a.iter().zip(b).enumerate();
+            pairs.for_each(|(at, (a, b))| assert_alike(a, b, &format!("{place}[{at}]")));
+        }
+        (Object(a), Object(b)) if a.keys().eq(b.keys()) => {
+            a.keys()
+                .for_each(|key| assert_alike(&a[key], &b[key], &format!("{place}.{key}")));
+        }
+        _ => assert_eq!(one, other, "{place}"),
+    }
+}
+
+// Verifies: PSY-023, PSY-031, PSY-032, PSY-034.
+#[test]
+fn the_order_of_rows_counts_for_nothing_but_the_order_of_what_is_told() {
+    let text = include_str!("table1.csv");
+    let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).collect();
+    let analysed = |rows: Vec<&str>| {
+        let text = [&[lines[0]], &rows[..]].concat().join("\n");
+        let table = AnswerTable::from_csv(&text, "t.csv").unwrap();
+        serde_json::to_value(analyse(&table).unwrap()).unwrap()
+    };
+    let expected = analysed(lines[1..].to_vec());
+    let mut found = analysed(lines[1..].iter().rev().copied().collect());
+    let conditions = found["conditions"].as_array_mut().unwrap();
+    conditions.reverse();
+    for condition in conditions {
+        condition["subjects"].as_array_mut().unwrap().reverse();
+    }
+    assert_alike(&found["conditions"], &expected["conditions"], "conditions");
+    let pairs = |of: &serde_json::Value| of["comparisons"].as_array().unwrap().len();
+    assert_eq!(pairs(&found), pairs(&expected));
+}
+
 mod observer {
     use std::time::Duration;
 
