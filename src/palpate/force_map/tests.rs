@@ -325,7 +325,7 @@ fn forces_at_a_stored_depth() {
 // Verifies: MAP-060, MAP-070.
 #[test]
 fn a_table_may_be_longer_than_16_bits_count() {
-    let count = (1 << 16) + 3;
+    let count = (1 << 16) + 9;
     let laterals: Vec<f64> = (0..count).map(|at| 1e-6 * at as f64).collect();
     let of = |row: usize, column: usize| (row * count + column) as f64;
     let forces = Force::new(
@@ -363,7 +363,7 @@ proptest! {
     // Verifies: MAP-060, MAP-070, MAP-073.
     #[test]
     fn forces_between_poses_and_smoothed_ones_add_up_move_and_have_mirror_images(
-        steps in prop::collection::vec(0.5e-3..1e-3, 8),
+        steps in prop::collection::vec(0.5e-3..1e-3, 9),
         one in prop::collection::vec(prop::array::uniform2(-2.0..2.0), 18),
         other in prop::collection::vec(prop::array::uniform2(-2.0..2.0), 18),
         (depth, at, shift) in (0.0..5e-3, 0.0..1.0, -2e-3..2e-3),

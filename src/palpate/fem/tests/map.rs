@@ -176,6 +176,41 @@ fn a_lopsided_inclusion_on_the_axis_is_solved_on_either_side() {
     }
 }
 
+// A force is a modulus times a length times the probe's length, which stays: without dimensions the model is the same.
+// Verifies: FEM-020, CON-001.
+#[test]
+fn forces_grow_with_moduli_and_with_lengths() {
+    let phantom = off_centre(2.6, 2.0);
+    let stiffer = phantom.changed(|parts| {
+        let layers = parts.layers.iter_mut().map(|of| &mut of.material);
+        let materials = layers.chain(parts.inclusions.iter_mut().map(|of| &mut of.material));
+        materials.for_each(|of| of.youngs_modulus *= 4.0);
+    });
+    let larger = phantom.changed(|parts| {
+        let layers = parts.layers.iter_mut().map(|of| &mut of.thickness);
+        let inclusion = &mut parts.inclusions[0];
+        inclusion.shape = crate::phantom::tests::disc(2.0 * 6.4);
+        let of_inclusion = [&mut inclusion.centre_x, &mut inclusion.depth];
+        let others = [&mut parts.well.width, &mut parts.probe.radius];
+        let lengths = layers.chain(of_inclusion).chain(others);
+        lengths.for_each(|length| *length *= 2.0);
+    });
+    let force = |phantom: &Phantom, scale: f64| {
+        let model = Model::new(phantom, scale * 2e-3, Contact::default()).unwrap();
+        let found = model.solve(pose(scale * 3e-3, scale * -1.5e-3)).unwrap();
+        found.force
+    };
+    let own = force(&phantom, 1.0);
+    // Powers of two, so that the numbers are the same, but for corners of the larger mesh that are rounded to another nanometre.
+    for (found, factor, tolerance) in [
+        (force(&stiffer.unwrap(), 1.0), 4.0, 1e-12),
+        (force(&larger.unwrap(), 2.0), 2.0, 1e-5),
+    ] {
+        assert_near(found.normal, factor * own.normal, tolerance);
+        assert_near(found.lateral, factor * own.lateral, tolerance);
+    }
+}
+
 // Verifies: PYT-010.
 #[test]
 fn progress_is_told_of_what_is_solved() {
