@@ -106,8 +106,7 @@ fn replace(path: &Path, text: &[u8]) -> std::io::Result<()> {
     // The error about a missing folder shall not name the temporary file.
     std::fs::metadata(folder)?;
     // The keys of a hash map are random.
-    let number = RandomState::new().build_hasher().finish();
-    let (name, mut partial) = partial_file(folder, number)?;
+    let (name, mut partial) = partial_file(folder, RandomState::new().build_hasher().finish())?;
     let mut written = partial.write_all(text);
     if let Some(there) = there {
         written = written.and_then(|()| partial.set_permissions(there.permissions()));
