@@ -114,13 +114,10 @@ fn study(name: &str, phantom: &Phantom, laterals: &[f64]) -> Shares {
         );
         (text, within)
     };
-    let (normal, normal_within) = errors(
-        |map| &map.table().forces().normal,
-        &bands.normal_force_band,
-        true,
-    );
+    let (normal, normal_within) =
+        errors(|map| map.table().normal(), &bands.normal_force_band, true);
     let (lateral, lateral_within) = errors(
-        |map| &map.table().forces().lateral,
+        |map| map.table().lateral().unwrap(),
         &bands.lateral_force_band,
         false,
     );

@@ -22,7 +22,7 @@ fn main() {
             line += &format!(
                 "  {name}: {} nodes, {:.5} N",
                 model.mesh().nodes.len(),
-                map.table().forces().normal.row(8)[0]
+                map.table().normal().row(8)[0]
             );
         }
         if run == 0 {

@@ -3,6 +3,7 @@
 
 mod bank;
 mod many;
+mod one_channel;
 mod refused;
 mod robust;
 

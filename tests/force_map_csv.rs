@@ -165,7 +165,7 @@ proptest! {
         prop_assert_eq!(bits(back.depths()), bits(table.depths()));
         prop_assert_eq!(bits(back.laterals()), bits(table.laterals()));
         let forces = |t: &ForceTable| {
-            [bits(t.forces().normal.values()), bits(t.forces().lateral.values())]
+            [bits(t.normal().values()), bits(t.lateral().unwrap().values())]
         };
         prop_assert_eq!(forces(&back), forces(&table));
     }
@@ -216,7 +216,7 @@ fn samples_at_any_poses_become_a_map_that_says_so() {
         (&[1e-3, 2e-3][..], 10)
     );
     // The plane of the neighbours is that of the forces, along x and, with two depths in reach, down.
-    assert!((table.forces().lateral.row(0)[4] - 0.4).abs() < 1e-9);
+    assert!((table.lateral().unwrap().row(0)[4] - 0.4).abs() < 1e-9);
     let refused = place.refused("import-map rig.csv --grid-mm 1,2,3");
     assert_eq!(refused, "--grid-mm has 3 steps; give one or two");
 }

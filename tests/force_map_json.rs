@@ -65,7 +65,7 @@ fn assert_same(read: &ForceMap, written: &ForceMap) {
     assert_eq!(read, written);
     let bits =
         |matrix: &Matrix| -> Vec<_> { matrix.values().iter().map(|v| v.to_bits()).collect() };
-    let [read, written] = [read, written].map(|map| map.table().forces().as_ref().map(bits));
+    let [read, written] = [read, written].map(|map| map.table().both().unwrap().map(bits));
     assert_eq!(read, written);
 }
 
@@ -140,9 +140,7 @@ fn other_schemas_and_newer_versions_are_refused_first() {
 fn every_required_key_is_missed_by_name() {
     let example = example();
     let object: serde_json::Value = serde_json::from_str(&example).unwrap();
-    for key in
-        "program_version source depths_m laterals_m normal_force_n lateral_force_n".split(' ')
-    {
+    for key in "program_version source depths_m laterals_m normal_force_n".split(' ') {
         let mut without = object.clone();
         without.as_object_mut().unwrap().remove(key).unwrap();
         let message = read(&without.to_string()).unwrap_err();
@@ -150,6 +148,12 @@ fn every_required_key_is_missed_by_name() {
         let missing = format!(": {key} is missing");
         assert!(message.contains(&missing), "{message}");
     }
+    // A measured map may lack it.
+    let mut without = object.clone();
+    without.as_object_mut().unwrap().remove("lateral_force_n");
+    let message = read(&without.to_string()).unwrap_err();
+    let expected = "map.json: lateral_force_n is missing; give both forces of a computed map";
+    assert_eq!(message, expected);
 }
 
 // Verifies: MAP-002, MAP-024, MAP-026.

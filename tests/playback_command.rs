@@ -53,8 +53,8 @@ fn a_noisy_map_that_is_refused_is_played_when_smoothed() {
     let generator = Generator::new(20_261_122, 4);
     let noisy = clean
         .table()
-        .forces()
-        .as_ref()
+        .both()
+        .unwrap()
         .zip(Force::new(0, 1))
         .map(|(forces, channel)| {
             Matrix::from_fn(9, 41, |row, column| {

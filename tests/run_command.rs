@@ -49,7 +49,7 @@ fn a_run_of_own_asymmetric_phantoms_shows_them() {
     here.succeed("run --config run.toml");
     let out = here.at("palpate-out");
     let map = ForceMap::read(&out.join("maps/map-asymmetric.json")).unwrap();
-    let forces = map.table().forces().normal.row(1);
+    let forces = map.table().normal().row(1);
     assert!(forces[0] > forces[4] + 0.02, "{forces:?}");
     // The mesh under the probe where it is nearest to the first inclusion.
     let page = fs::read_to_string(out.join("report.html")).unwrap();

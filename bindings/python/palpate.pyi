@@ -62,7 +62,7 @@ class ForceMap:
         cls,
         depths_mm: ArrayLike,
         laterals_mm: ArrayLike,
-        lateral_n: ArrayLike,
+        lateral_n: ArrayLike | None,
         normal_n: ArrayLike,
         phantom: Phantom | None = None,
         note: str = "",
@@ -75,7 +75,7 @@ class ForceMap:
     @property
     def laterals_mm(self) -> NDArray[np.float64]: ...
     @property
-    def lateral_n(self) -> NDArray[np.float64]: ...
+    def lateral_n(self) -> NDArray[np.float64] | None: ...
     @property
     def normal_n(self) -> NDArray[np.float64]: ...
     @property

@@ -46,7 +46,7 @@
 //! // The force on a hand that probes there, 3 mm deep: between the forces at 2 and at 4 mm.
 //! let loaded = LoadedTable::new(with.table())?;
 //! let force = loaded.table().force(3e-3, 0.0);
-//! let [shallow, deep] = [0, 1].map(|row| with.table().forces().normal.row(row)[5] as f32);
+//! let [shallow, deep] = [0, 1].map(|row| with.table().normal().row(row)[5] as f32);
 //! assert!(shallow < force.normal && force.normal < deep);
 //! # Ok(())
 //! # }

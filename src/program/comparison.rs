@@ -42,11 +42,11 @@ pub fn compare(measured: &ForceTable, phantom: &Phantom) -> Result<Vec<String>, 
     tell_large_mesh(phantom, MESH_SIZE)?;
     let model = Model::new(phantom, MESH_SIZE, Contact::default())?;
     let bar = bar(poses.len(), phantom.name());
-    let forces = measured.forces().as_ref();
     let pair = |(row, column)| {
         let solution = model.solve(pose(measured, (row, column)))?;
         bar.inc(1);
-        let found = forces.map(|force| force.row(row)[column]);
+        let found = Force::new(measured.lateral(), Some(measured.normal()));
+        let found = found.map(|force| Some(force?.row(row)[column]));
         Ok::<_, FemError>((found, solution.force))
     };
     let pairs = poses.into_iter().map(pair).collect::<Result<Vec<_>, _>>()?;
@@ -58,7 +58,7 @@ pub fn compare(measured: &ForceTable, phantom: &Phantom) -> Result<Vec<String>, 
 ///
 /// Implements: CLI-022.
 pub fn left_out(measured: &ForceTable, phantom: &Phantom) -> usize {
-    let poses = measured.forces().normal.entries();
+    let poses = measured.normal().entries();
     let stand = poses.map(|(row, column, _)| stands(measured, phantom, (row, column)));
     stand.filter(|stands| !stands).count()
 }
@@ -112,9 +112,12 @@ fn odd_lengths(measured: &ForceTable, phantom: &Phantom) -> Vec<String> {
 /// What stands out in measured and computed forces (N) at some poses in the gel; if nothing does, their difference.
 ///
 /// Implements: CLI-022.
-fn odd_forces(pairs: &[(Force<f64>, Force<f64>)]) -> Vec<String> {
-    let normal: Vec<_> = pairs.iter().map(|(a, b)| (a.normal, b.normal)).collect();
-    let lateral: Vec<_> = pairs.iter().map(|(a, b)| (a.lateral, b.lateral)).collect();
+fn odd_forces(pairs: &[(Force<Option<f64>>, Force<f64>)]) -> Vec<String> {
+    let of = |channel: fn(Force<Option<f64>>) -> Option<f64>| {
+        let there = |(a, b): &(_, Force<f64>)| channel(*a).zip(channel(b.map(Some)));
+        pairs.iter().filter_map(there).collect::<Vec<_>>()
+    };
+    let (normal, lateral) = (of(|force| force.normal), of(|force| force.lateral));
     let ratio = median_ratio(&normal);
     let times = format!("{ratio:.4} times the computed one (median)");
     let mut odd = Vec::new();
@@ -189,7 +192,7 @@ mod tests {
         let errors = [0.3, -0.3, 0.0, 0.04];
         let pair = |((normal, lateral), error): ((f64, f64), f64)| {
             let found = Force::new(factors.1 * lateral, factors.0 * (normal + error));
-            (found, Force::new(lateral, normal))
+            (found.map(Some), Force::new(lateral, normal))
         };
         let pairs: Vec<_> = COMPUTED.into_iter().zip(errors).map(pair).collect();
         odd_forces(&pairs)
@@ -226,8 +229,12 @@ mod tests {
             250 1 => the normal force is 250.0000";
         assert_said(cases, |[normal, lateral]| said((normal, lateral)));
         // A lateral force of 0.03 N beside 2 N tells nothing of its sign.
-        let pairs = [(-0.03, 0.03), (0.03, -0.03)]
-            .map(|(found, expected)| (Force::new(found, 2.0), Force::new(expected, 2.0)));
+        let pairs = [(-0.03, 0.03), (0.03, -0.03)].map(|(found, expected)| {
+            (
+                Force::new(Some(found), Some(2.0)),
+                Force::new(expected, 2.0),
+            )
+        });
         assert!(odd_forces(&pairs)[0].starts_with("the normal force is 1.0000"));
     }
 

@@ -83,7 +83,7 @@ pub fn demo(arguments: &DemoArguments) -> Result<(), CliError> {
         ("sweep-with.csv", sweep(with, EXACT, 2)),
         ("sweep-disturbed.csv", sweep(with, DISTURBED, 3)),
         ("blank.csv", sweep(without, BLANK, 4)),
-        ("measured.csv", measured(inclusion.table())),
+        ("measured.csv", measured(inclusion.table())?),
         ("curve.csv", curve()?),
     ];
     for (name, text) in files {
@@ -129,17 +129,17 @@ fn sweep(row: Force<&[f64]>, Sensor(gain, drifts): Sensor, stream: u64) -> Strin
 }
 
 /// The map as a rig would measure it, row by row.
-fn measured(map: &ForceTable) -> String {
+fn measured(map: &ForceTable) -> Result<String, CliError> {
     let generator = Generator::new(SEED, 5);
     let mut text = String::from("depth_mm,lateral_mm,normal_force_n,lateral_force_n\n");
-    let [normal, lateral] = [&map.forces().normal, &map.forces().lateral];
+    let Force { lateral, normal } = map.both()?;
     for (sample, (row, column, force)) in (0..).zip(normal.entries()) {
         let noise = [0, 1].map(|channel| MAP_NOISE * generator.normal(channel, sample));
         let (normal, along) = (force + noise[1], lateral.row(row)[column] + noise[0]);
         let (depth, x) = (map.depths()[row] * 1e3, map.laterals()[column] * 1e3);
         let _ = writeln!(text, "{depth:.1},{x:.1},{normal:.4},{along:.4}");
     }
-    text
+    Ok(text)
 }
 
 /// An indentation of a stiffer gel that relaxes, (1 + t/1 s)^(−0.135).

@@ -84,22 +84,25 @@ pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
 /// Implements: MAP-081.
 fn shifts(gridded: &Gridded) -> String {
     let [depth, lateral] = gridded.largest_shift.map(|shift| 1e3 * shift);
-    let Force {
-        lateral: along,
-        normal,
-    } = gridded.residual;
+    let left = of_forces(gridded.residual);
     format!(
-        "samples are at most {depth:.3} mm (depth) and {lateral:.3} mm (lateral) from the grid; the planes leave {normal:.4} N (normal) and {along:.4} N (lateral), root mean square"
+        "samples are at most {depth:.3} mm (depth) and {lateral:.3} mm (lateral) from the grid; the planes leave {left}, root mean square"
     )
 }
 
 /// Implements: CLI-020.
 fn noise(smoothed: &Smoothed) -> String {
-    let (sd, freedom) = (smoothed.noise_sd, smoothed.degrees_of_freedom);
+    let (sd, freedom) = (of_forces(smoothed.noise_sd), smoothed.degrees_of_freedom);
     format!(
-        "noise sd of a sample, from the residuals of smoothing: {:.4} N (normal) and {:.4} N (lateral), with {freedom:.1} degrees of freedom each",
-        sd.normal, sd.lateral
+        "noise sd of a sample, from the residuals of smoothing: {sd}, with {freedom:.1} degrees of freedom each"
     )
+}
+
+/// A number of newtons of each force that is there, in words.
+fn of_forces(Force { lateral, normal }: Force<Option<f64>>) -> String {
+    let forces = [(normal, "normal"), (lateral, "lateral")].into_iter();
+    let there = forces.filter_map(|(newtons, name)| Some(format!("{:.4} N ({name})", newtons?)));
+    there.collect::<Vec<_>>().join(" and ")
 }
 
 /// The phantom, if its probe can reach each pose; notes what stands out in the forces.
@@ -116,7 +119,7 @@ fn compared(file: &str, forces: &ForceTable, phantom: Phantom) -> Option<Phantom
     if left_out == 0 {
         return Some(phantom);
     }
-    let all = forces.forces().normal.values().len();
+    let all = forces.normal().values().len();
     note(&format!(
         "the probe cannot reach {left_out} of {all} poses; the map is stored without its phantom"
     ));

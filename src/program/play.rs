@@ -83,6 +83,8 @@ fn table(
 ) -> Result<(LoadedTable, f64), CliError> {
     let path = &arguments.map;
     let map = ForceMap::read(path)?;
+    let both = map.table().both();
+    both.map_err(CliError::refused(path.display()))?;
     let damping = arguments.device.damping(capabilities);
     let file = path.display();
     if arguments.scale {

@@ -305,8 +305,8 @@ impl Bank {
     /// gamma ...); likeliest, estimate, mean and interval_95 of each parameter in mm and kPa, if there is an inclusion; places,
     /// shape (m, 4), in the order of the bank's axes, and their probabilities, shape (m,).
     ///
-    /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N. noise_sd_n: of a sample in N, one for both
-    /// channels or (lateral, normal), or None if the record tells. unknown: what is fitted, of offset, drift, gain, depth and variance.
+    /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N, or (n,), normal alone. noise_sd_n: of a sample in
+    /// N, one for both channels or (lateral, normal), or None if the record tells. unknown: what is fitted, of offset, drift, gain, depth and variance.
     /// white: do not test the record for correlated noise. The decision is for the fewest errors, or keeps
     /// max_miss or max_false_alarm. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion.
     #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, unknown=vec!["offset".into(), "drift".into(), "gain".into(),

@@ -15,7 +15,7 @@ pub struct Phantom(pub phantom::Phantom);
 
 /// The force on the probe over a grid of m depths and n lateral positions, N. ForceMap(depths_mm, laterals_mm, lateral_n, normal_n) is a
 /// map of measured forces: depths_mm of shape (m,) and laterals_mm of shape (n,) increase, in mm; lateral_n and normal_n have the
-/// shape (m, n), in N. phantom: what was measured, if that is known.
+/// shape (m, n), in N; lateral_n is None where it was not measured. phantom: what was measured, if that is known.
 // Implements: PYT-002.
 #[pyclass(frozen, eq, module = "palpate")]
 #[derive(PartialEq)]

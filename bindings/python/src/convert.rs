@@ -79,8 +79,10 @@ pub fn channels<'py, S: AsRef<[f64]>>(
     force: Force<S>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let force = force.as_ref().map(AsRef::as_ref);
-    let samples = force.lateral.len();
-    array(py, &[2, samples], force.into_array().concat())
+    let shape = [2, force.normal.len()];
+    // No lateral ones: normal forces alone.
+    let shape = &shape[usize::from(force.lateral.is_empty())..];
+    array(py, shape, force.into_array().concat())
 }
 
 /// What NumPy makes of `values` as 64-bit floats in C order: the array itself where it is that already.

@@ -51,16 +51,16 @@ impl ForceMap {
     fn new(
         depths_mm: Any,
         laterals_mm: Any,
-        lateral_n: Any,
+        lateral_n: Option<Any>,
         normal_n: Any,
         phantom: Option<&Phantom>,
         note: &str,
     ) -> PyResult<ForceMap> {
         let depths = list("depths_mm", depths_mm, -3)?;
         let laterals = list("laterals_mm", laterals_mm, -3)?;
-        let lateral = matrix("lateral_n", lateral_n)?;
-        let forces = Force::new(lateral, matrix("normal_n", normal_n)?);
-        let table = ForceTable::new(depths, laterals, forces).map_err(refused)?;
+        let lateral = lateral_n.map(|lateral| matrix("lateral_n", lateral));
+        let (normal, lateral) = (matrix("normal_n", normal_n)?, lateral.transpose()?);
+        let table = ForceTable::of_channels(depths, laterals, normal, lateral).map_err(refused)?;
         let source = Source::Measured(Measurement::new("", note));
         let phantom = phantom.map(|phantom| phantom.0.clone());
         let map = force_map::ForceMap::new(source, phantom, table);
@@ -97,16 +97,17 @@ impl ForceMap {
         array_in_unit(py, self.0.table().laterals(), 3)
     }
 
-    /// The lateral forces along +x, N: shape (m, n).
+    /// The lateral forces along +x, N: shape (m, n); None if the map has none.
     #[getter]
-    fn lateral_n<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.forces(py, &self.0.table().forces().lateral)
+    fn lateral_n<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let lateral = self.0.table().lateral();
+        lateral.map(|forces| self.forces(py, forces)).transpose()
     }
 
     /// The normal forces out of the gel, N: shape (m, n).
     #[getter]
     fn normal_n<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.forces(py, &self.0.table().forces().normal)
+        self.forces(py, self.0.table().normal())
     }
 
     /// The phantom, if it is known.
@@ -131,7 +132,7 @@ impl ForceMap {
     }
 
     /// The forces expected along a sweep at a depth, in mm, at laterals_mm, shape (n,), in mm: linear between the poses of the map, refused
-    /// beyond them. Shape (2, n), lateral and normal, N.
+    /// beyond them. Shape (2, n), lateral and normal, N; (n,), normal alone, if the map has no lateral forces.
     fn sweep<'py>(
         &self,
         py: Python<'py>,

@@ -72,8 +72,9 @@ def test_an_inclusion_is_judged_whatever_the_gel_does(bank):
     # A sensor of one force.
     one = bank.judge(x, noisy(disc)[1], noise_sd_n=0.02, known=["gel", "support", "smooth"])
     assert one["inclusion"] is True and one["noise_sd_lateral_n"] is None, one
-    with pytest.raises(palpate.Refused, match="the exact model needs lateral forces"):
-        bank.locate(x, gel[1])
+    one = bank.locate(x, noisy(disc)[1], noise_sd_n=0.02, white=True)
+    assert one["inclusion"] is True and one["noise_sd_lateral_n"] is None, one
+    assert one["gamma"] < bank.locate(x, noisy(disc), noise_sd_n=0.02, white=True)["gamma"]
     assert bank.judge(x, noisy(gel), zeroed=True)["inclusion"] is None
     assert bank.judge(x, 1000 * gel)["causes"] == ["force_unit"]
     with pytest.raises(palpate.Refused, match="known"):

@@ -137,6 +137,17 @@ def test_maps_are_written_and_read(force_map, phantom, tmp_path):
     assert np.array_equal(measured.normal_n, force_map.normal_n) and np.array_equal(measured.lateral_n, force_map.lateral_n)
 
 
+def test_a_map_may_lack_the_lateral_force(force_map, tmp_path):
+    one = palpate.ForceMap(force_map.depths_mm, force_map.laterals_mm, None, force_map.normal_n)
+    one.write(tmp_path / "one.csv")
+    for of in (one, palpate.ForceMap.read(tmp_path / "one.csv")):
+        assert of.lateral_n is None and np.array_equal(of.normal_n, force_map.normal_n)
+        assert np.array_equal(of.sweep(2, of.laterals_mm), force_map.row(2)[1])
+        for needs_both in (lambda: of.row(2), lambda: of.force(2, 0)):
+            with pytest.raises(palpate.Refused, match="no lateral forces, which are needed here; give a map with both"):
+                needs_both()
+
+
 def test_forces_between_and_beyond_the_poses(force_map):
     assert force_map.lateral_n.shape == (3, 5)
     assert np.array_equal(force_map.row(2), [force_map.lateral_n[1], force_map.normal_n[1]])

@@ -64,7 +64,10 @@ fn check_table(table: &ForceTable) {
     }
     assert!(table.depths()[0] >= 0.0);
     let shape = (table.depths().len(), table.laterals().len());
-    for forces in [&table.forces().normal, &table.forces().lateral] {
+    for forces in [Some(table.normal()), table.lateral()]
+        .into_iter()
+        .flatten()
+    {
         assert_eq!((forces.row_count(), forces.column_count()), shape);
         assert!(forces.values().iter().all(|force| force.is_finite()));
     }
@@ -84,9 +87,13 @@ fn check_between(table: &ForceTable) {
     let (depth, lateral) = (table.depths()[0], table.laterals()[0]);
     match table.force(depth, lateral) {
         Ok(force) => {
-            assert_eq!(force.normal, table.forces().normal.row(0)[0]);
-            assert_eq!(force.lateral, table.forces().lateral.row(0)[0]);
+            assert_eq!(force.normal, table.normal().row(0)[0]);
+            assert_eq!(
+                Some(force.lateral),
+                table.lateral().map(|force| force.row(0)[0])
+            );
         }
+        Err(_) if table.lateral().is_none() => {}
         Err(error) if error.found.ends_with(" a single entry") => {}
         Err(error) if error.found.ends_with(" beyond the range of numbers") => {}
         Err(error) => panic!("{error}"),
@@ -94,6 +101,8 @@ fn check_between(table: &ForceTable) {
     if let Ok(force) = table.force(2e-3, 1e-3) {
         assert!(force.lateral.is_finite() && force.normal.is_finite());
     }
-    let row = table.row(depth).expect("a stored depth");
-    assert_eq!(row.normal, table.forces().normal.row(0));
+    match table.row(depth) {
+        Ok(row) => assert_eq!(row.normal, table.normal().row(0)),
+        Err(error) => assert!(table.lateral().is_none(), "{error}"),
+    }
 }

@@ -99,7 +99,7 @@ fn forces(name: &str) -> Measured<Force<Vec<f64>>> {
     let map = Model::new(&phantom, MESH_SIZE, Contact::default())
         .and_then(|model| model.map(&[DEPTH], &laterals, &|_| ()))
         .map_err(|error| format!("phantom {name}: {error}"))?;
-    let forces = map.table().forces().as_ref();
+    let forces = map.table().both().map_err(|error| error.to_string())?;
     Ok(forces.map(|component| component.row(0).to_vec()))
 }
 

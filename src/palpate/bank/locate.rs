@@ -105,7 +105,9 @@ impl BankSearch<'_> {
             design.template = signal_at(self.bank.axes(), at, signals[0].len(), sample);
             let (mut white, fit) = question.fitted(&design).map_err(refused)?;
             let level = question.noise_level();
-            let detector = self.detector(&white, &signals, fit.noise_sd, level)?;
+            // Nothing is over that of a force that is not there.
+            let noise_sd = fit.noise_sd.map(|sd| sd.unwrap_or(1.0));
+            let detector = self.detector(&white, &signals, noise_sd, level)?;
             self.judge(&detector, &mut white, fit)
         };
         located().map_err(|refusal: Refusal| refusal.in_file(record.file()))
@@ -120,7 +122,7 @@ impl BankSearch<'_> {
         noise_sd: Force<f64>,
         level: NoiseLevel,
     ) -> Result<BankDetector, Refusal> {
-        let template = |signal: &Vec<f64>| whitened(signal, noise_sd);
+        let template = |signal: &Vec<f64>| whitened(signal, white.samples, noise_sd);
         let uniform = vec![1.0 / signals.len() as f64; signals.len()];
         let detector = BankDetector::new(
             self.bank.axes(),

@@ -87,8 +87,9 @@ impl Reach<'_> {
         let f0 = expected(reference, depth)?;
         let at = |depth| expected(reference, depth);
         let depths = reference.table().depths();
-        let nuisances = nuisances_of(self.unknown, depths, depth, &f0, at)?;
-        let white = |signal: &[f64]| whitened(signal, self.noise_sd);
+        let samples = positions.len();
+        let nuisances = nuisances_of(self.unknown, depths, depth, (&f0, samples), at)?;
+        let white = |signal: &[f64]| whitened(signal, samples, self.noise_sd);
         let mut nuisances: Vec<f64> = nuisances.iter().flat_map(|of| white(of)).collect();
         let space = Nuisances::new(&mut nuisances, f0.len()).map_err(refused)?;
         let axes = self.bank.axes();

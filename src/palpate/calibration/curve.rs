@@ -65,7 +65,8 @@ impl Curve {
     /// Implements: CAL-001.
     pub fn from_csv(text: &str, file: &str, layout: &Layout) -> Result<Curve, Refusal> {
         let read = || {
-            let read = Rows::parse_last_optional(text, COLUMNS, EXPECTED_HEADER, layout)?;
+            let read =
+                Rows::parse_last_optional::<2>(text, COLUMNS, EXPECTED_HEADER, layout, true)?;
             let (table, has_times) = read;
             let rows = table.rows.iter();
             let column = |of: usize| rows.clone().map(|(_, row)| row[of]).collect::<Vec<_>>();

@@ -54,7 +54,7 @@ impl Gel {
             model.map(&depths, &[asked.lateral], &|_| ())
         };
         let logarithms = |map: &ForceMap| -> Vec<f64> {
-            let forces = map.table().forces().normal.values().iter();
+            let forces = map.table().normal().values().iter();
             forces.map(|force| libm::log(*force)).collect()
         };
         let own = map(phantom)?;

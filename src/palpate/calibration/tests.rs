@@ -58,7 +58,7 @@ impl Rig {
         let model = Model::new(phantom, mesh_size, Contact::default()).unwrap();
         let map = model.map(&below, &[0.0], &|_| ()).unwrap();
         let mut forces = vec![0.0; depths.len() - below.len()];
-        forces.extend(map.table().forces().normal.values());
+        forces.extend(map.table().normal().values());
         Rig { depths, forces }
     }
 

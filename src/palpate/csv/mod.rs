@@ -48,37 +48,49 @@ impl<const N: usize> Rows<N> {
         expected: &str,
         layout: &Layout,
     ) -> Result<Self, Refusal> {
-        let (rows, missing) = Rows::read(text, columns, expected, layout)?;
-        missing.map_or(Ok(rows), |(_, refusal)| Err(refusal))
+        Rows::read(text, columns, expected, layout)?.complete()
     }
 
-    /// As [`Rows::parse_as`], of samples, of which those that lack a number, empty or NaN, are left out with a note.
+    /// As [`Rows::parse_as`], where the header may lack the last of the `M` + 1 columns: its numbers are then 0. Also whether it is there.
+    /// Of samples, those that lack a number, empty or NaN, are left out with a note.
     ///
     /// # Errors
     /// As [`Rows::parse_as`].
     ///
-    /// Implements: MAP-048.
-    pub fn parse_samples(
+    /// Implements: MAP-048, CAL-001, TRC-011, MAP-083.
+    pub fn parse_last_optional<const M: usize>(
         text: &str,
         columns: [Column; N],
         expected: &str,
         layout: &Layout,
-    ) -> Result<Self, Refusal> {
-        let (mut rows, missing) = Rows::read(text, columns, expected, layout)?;
-        if let Some((count, _)) = missing {
-            let note = format!("samples with a missing number are not used: {count}");
-            rows.notes.push(note);
-        }
-        Ok(rows)
+        are_samples: bool,
+    ) -> Result<(Self, bool), Refusal> {
+        const { assert!(M + 1 == N) };
+        let last = columns[M];
+        let others: [Column; M] = std::array::from_fn(|at| columns[at]);
+        let is_named = |header: Header<'_, M>| header.fields.iter().any(|of| names(of, last));
+        let header = Header::find(&lines(text, layout), others, layout);
+        let is_there = layout.states(last) || header.is_ok_and(is_named);
+        let read = if is_there {
+            Rows::read(text, columns, expected, layout)?
+        } else {
+            Rows::read(text, others, expected, layout)?.with_zeros()
+        };
+        let rows = if are_samples {
+            read.samples()
+        } else {
+            read.complete()?
+        };
+        Ok((rows, is_there))
     }
 
-    /// The table without the rows in which a number is missing; how many these are, if any, and what is wrong with the first.
+    /// The table without the rows in which a number is missing.
     fn read(
         text: &str,
         columns: [Column; N],
         expected: &str,
         layout: &Layout,
-    ) -> Result<(Self, Option<(usize, Refusal)>), Refusal> {
+    ) -> Result<Read<N>, Refusal> {
         layout.check(&columns)?;
         let lines = lines(text, layout);
         let header = Header::find(&lines, columns, layout);
@@ -113,40 +125,56 @@ impl<const N: usize> Rows<N> {
             rows,
             notes,
         };
-        Ok((rows, first.map(|first| (missing.len(), first))))
+        let missing = first.map(|first| (missing.len(), first));
+        Ok(Read { rows, missing })
     }
 }
 
-impl Rows<3> {
-    /// As [`Rows::parse_samples`], where the header may lack the last column: its numbers are then 0. Also whether it is there.
-    ///
-    /// # Errors
-    /// As [`Rows::parse_samples`].
-    ///
-    /// Implements: CAL-001, TRC-011.
-    pub fn parse_last_optional(
-        text: &str,
-        columns: [Column; 3],
-        expected: &str,
-        layout: &Layout,
-    ) -> Result<(Self, bool), Refusal> {
-        let [first, second, last] = columns;
-        let is_named = |header: Header<'_, 2>| header.fields.iter().any(|of| names(of, last));
-        let header = Header::find(&lines(text, layout), [first, second], layout);
-        if layout.states(last) || header.is_ok_and(is_named) {
-            let rows = Rows::parse_samples(text, columns, expected, layout)?;
-            return Ok((rows, true));
+/// A table without the rows in which a number is missing.
+struct Read<const N: usize> {
+    rows: Rows<N>,
+    /// How many these are, if any, and what is wrong with the first.
+    missing: Option<(usize, Refusal)>,
+}
+
+impl<const N: usize> Read<N> {
+    /// The table, in which no number may be missing.
+    fn complete(self) -> Result<Rows<N>, Refusal> {
+        let rows = self.rows;
+        self.missing.map_or(Ok(rows), |(_, refusal)| Err(refusal))
+    }
+
+    /// The table, with a note of the rows that are left out.
+    fn samples(self) -> Rows<N> {
+        let mut rows = self.rows;
+        if let Some((count, _)) = self.missing {
+            let note = format!("samples with a missing number are not used: {count}");
+            rows.notes.push(note);
         }
-        let two = Rows::parse_samples(text, [first, second], expected, layout)?;
-        let [one, other] = two.names;
-        let rows = two.rows.into_iter();
+        rows
+    }
+
+    /// The table with columns of zeros behind its own.
+    fn with_zeros<const M: usize>(self) -> Read<M> {
+        let Rows {
+            line,
+            names,
+            rows,
+            notes,
+        } = self.rows;
+        let wider = |row: [f64; N]| std::array::from_fn(|at| row.get(at).copied().unwrap_or(0.0));
         let rows = Rows {
-            line: two.line,
-            names: [one, other, ""],
-            rows: rows.map(|(line, [a, b])| (line, [a, b, 0.0])).collect(),
-            notes: two.notes,
+            line,
+            names: std::array::from_fn(|at| names.get(at).copied().unwrap_or_default()),
+            rows: (rows.into_iter())
+                .map(|(line, row)| (line, wider(row)))
+                .collect(),
+            notes,
         };
-        Ok((rows, false))
+        Read {
+            rows,
+            missing: self.missing,
+        }
     }
 }
 
@@ -449,19 +477,24 @@ mod tests {
     #[test]
     fn samples_that_lack_a_number_are_left_out_and_counted() {
         let text = "t_s,force_n,note\n1,,a\n2,5,\n3,NaN,c\n,4,d\n6,7,nan\n";
-        let read = Rows::parse_samples(text, COLUMNS, "", &Layout::default()).unwrap();
-        assert_eq!(read.rows, [(3, [2.0, 5.0]), (6, [6.0, 7.0])]);
+        let layout = Layout::default();
+        let read = |text: &str, are_samples| {
+            Rows::parse_last_optional::<1>(text, COLUMNS, "", &layout, are_samples)
+        };
+        let (read_all, is_there) = read(text, true).unwrap();
+        assert!(is_there);
+        assert_eq!(read_all.rows, [(3, [2.0, 5.0]), (6, [6.0, 7.0])]);
         let notes = [
             "column \"note\" is not used",
             "samples with a missing number are not used: 3",
         ];
-        assert_eq!(read.notes, notes);
+        assert_eq!(read_all.notes, notes);
         // A table of other numbers is refused.
-        let refusal = Rows::parse(text, COLUMNS, "").err().unwrap().to_string();
-        assert!(
-            refusal.starts_with("line 2: force_n = \"\", but must be"),
-            "{refusal}"
-        );
+        let whole = Rows::parse(text, COLUMNS, "").err().unwrap().to_string();
+        let optional = read(text, false).err().unwrap().to_string();
+        let expected = "line 2: force_n = \"\", but must be";
+        assert!(whole.starts_with(expected), "{whole}");
+        assert_eq!(optional, whole);
     }
 
     // Verifies: MAP-040, MAP-033.

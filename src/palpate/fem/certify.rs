@@ -41,9 +41,8 @@ pub fn certified_map(
     };
     let (middle_nodes, middle) = coarser(MESH_RATIOS[0])?;
     let (coarse_nodes, coarse) = coarser(MESH_RATIOS[0] * MESH_RATIOS[1])?;
-    let [fine, middle, coarse] =
-        [&finest, &middle, &coarse].map(|map| map.table().forces().as_ref());
-    let bands = fine.zip(middle).zip(coarse);
+    let (fine, middle) = (finest.table().both()?, middle.table().both()?);
+    let bands = fine.zip(middle).zip(coarse.table().both()?);
     let bands = bands.map(|((fine, middle), coarse)| {
         Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
             band([fine, middle, coarse].map(|force| force.row(row)[column]))

@@ -4,11 +4,10 @@ use super::grid::{Gridded, gridded};
 use super::{ForceMap, ForceTable, Matrix, Measurement, Source, increasing};
 use crate::csv::{Column, Layout, Rows};
 use crate::decimal::{format_scaled, mm};
-use crate::force::Force;
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
 
-/// Depth, lateral position, normal force, lateral force.
+/// Depth, lateral position, normal force, lateral force, which may be missing.
 const COLUMNS: [Column; 4] = [
     &[&[("depth_mm", -3), ("depth_m", 0)]],
     &[&[("lateral_mm", -3), ("lateral_m", 0)]],
@@ -28,12 +27,12 @@ impl ForceMap {
     /// let text = "lateral_mm,depth_mm,normal_force_mn,lateral_force_mn\n0,4,1500,0\n2,4,1250,-125\n";
     /// let map = ForceMap::from_csv(text, "gel.csv", "third gel", None)?;
     /// assert_eq!((map.table().depths(), map.table().laterals()), (&[0.004][..], &[0.0, 0.002][..]));
-    /// assert_eq!(map.table().forces().lateral.values(), [0.0, -0.125]);
+    /// assert_eq!(map.table().both()?.lateral.values(), [0.0, -0.125]);
     /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
     /// # Errors
-    /// The header does not name each of the four columns once, a row is malformed, a pose is missing or there twice, or the forces
+    /// The header does not name each of the four columns, but for the lateral force, once, a row is malformed, a pose is missing or there twice, or the forces
     /// make no map (see [`ForceMap::new`]); with the file, and the line where there is one.
     ///
     /// Implements: MAP-026, MAP-030, MAP-032, MAP-033, MAP-037, MAP-041.
@@ -50,19 +49,20 @@ impl ForceMap {
 }
 
 impl ForceTable {
-    /// This table as CSV, row by row, lengths in mm and forces in N.
+    /// This table as CSV, row by row, lengths in mm and forces in N; without a column of lateral forces if it has none.
     ///
     /// Implements: MAP-030, MAP-022.
     pub fn to_csv(&self) -> String {
         let columns = COLUMNS.map(|names| names[0][0]);
-        let mut text = columns.map(|(name, _)| name).join(",") + "\n";
-        let Force { lateral, normal } = self.forces();
-        for ((row, column, normal), &lateral) in normal.entries().zip(lateral.values()) {
-            let fields = [self.depths()[row], self.laterals()[column], normal, lateral];
-            let fields = std::iter::zip(fields, columns);
+        let columns = &columns[..3 + usize::from(self.lateral().is_some())];
+        let line = |fields: Vec<String>| fields.join(",") + "\n";
+        let mut text = line(columns.iter().map(|(name, _)| (*name).into()).collect());
+        for (row, column, normal) in self.normal().entries() {
+            let lateral = self.lateral().map(|lateral| lateral.row(row)[column]);
+            let fields = [self.depths()[row], self.laterals()[column], normal];
+            let fields = fields.into_iter().chain(lateral).zip(columns);
             let written = fields.map(|(value, (_, power))| format_scaled(value, -power));
-            text.push_str(&written.collect::<Vec<_>>().join(","));
-            text.push('\n');
+            text.push_str(&line(written.collect()));
         }
         text
     }
@@ -86,7 +86,7 @@ impl ForceTable {
     ///
     /// let text = "\"\";depth_mm;lateral_mm;normal_force_n;lateral_force_n;volt\n1;4;0;1,5;0,0;2,25\n";
     /// let (table, notes) = ForceTable::from_csv_with_notes(text, "gel.csv", &Layout::default())?;
-    /// assert_eq!(table.forces().normal.values(), [1.5]);
+    /// assert_eq!(table.normal().values(), [1.5]);
     /// assert_eq!(notes[0], "column \"volt\" is not used");
     /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
@@ -100,11 +100,11 @@ impl ForceTable {
         file: &str,
         layout: &Layout,
     ) -> Result<(ForceTable, Vec<String>), Refusal> {
-        let read = || {
-            let table = Rows::parse_as(text, COLUMNS, EXPECTED_HEADER, layout)?;
-            Ok((on_a_grid(table.rows)?, table.notes))
+        let on_grid = || {
+            let (table, has_lateral) = read(text, layout, false)?;
+            Ok((on_a_grid(table.rows, has_lateral)?, table.notes))
         };
-        read().map_err(|refusal: Refusal| refusal.in_file(file))
+        on_grid().map_err(|refusal: Refusal| refusal.in_file(file))
     }
 
     /// As [`ForceTable::from_csv_with_notes`], of samples at any poses, which are put on a grid with these steps of depth and lateral
@@ -120,21 +120,34 @@ impl ForceTable {
         layout: &Layout,
         steps: [f64; 2],
     ) -> Result<(Gridded, Vec<String>), Refusal> {
-        let read = || {
-            let table = Rows::parse_samples(text, COLUMNS, EXPECTED_HEADER, layout)?;
+        let on_grid = || {
+            let (table, has_lateral) = read(text, layout, true)?;
             let samples: Vec<_> = table.rows.iter().map(|(_, sample)| *sample).collect();
-            Ok((gridded(&samples, steps)?, table.notes))
+            Ok((gridded(&samples, has_lateral, steps)?, table.notes))
         };
-        read().map_err(|refusal: Refusal| refusal.in_file(file))
+        on_grid().map_err(|refusal: Refusal| refusal.in_file(file))
     }
 }
 
-/// The table of `rows`, each with its line. There is exactly one for each pose of the grid, or an error.
+/// The rows of a file, whether they are samples that may lack a number, and whether they have lateral forces; if not, a note says so.
+///
+/// Implements: MAP-083.
+fn read(text: &str, layout: &Layout, are_samples: bool) -> Result<(Rows<4>, bool), Refusal> {
+    let read = Rows::parse_last_optional::<3>(text, COLUMNS, EXPECTED_HEADER, layout, are_samples)?;
+    let (mut rows, has_lateral) = read;
+    if !has_lateral {
+        let note = "there is no lateral force: the map is of the normal force alone";
+        rows.notes.push(note.into());
+    }
+    Ok((rows, has_lateral))
+}
+
+/// The table of `rows`, each with its line, of the normal force alone unless it `has_lateral` forces. There is exactly one for each pose of the grid, or an error.
 ///
 /// The poses are compared one by one, never laid out: n rows can span n² of them.
 ///
 /// Implements: MAP-033, MAP-037.
-fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>) -> Result<ForceTable, Refusal> {
+fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>, has_lateral: bool) -> Result<ForceTable, Refusal> {
     for (_, [depth, lateral, ..]) in &mut rows {
         // Adding 0 makes −0 the same position as 0.
         *depth += 0.0;
@@ -172,10 +185,11 @@ fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>) -> Result<ForceTable, Refusal> {
         }
     }
     let columns = laterals.len();
-    let [normal, lateral] = [2, 3].map(|force| {
+    let matrix = |force: usize| {
         Matrix::from_fn(depths.len(), columns, |row, column| {
             rows[row * columns + column].1[force]
         })
-    });
-    ForceTable::new(depths, laterals, Force::new(lateral, normal))
+    };
+    let (normal, lateral) = (matrix(2), has_lateral.then(|| matrix(3)));
+    ForceTable::of_channels(depths, laterals, normal, lateral)
 }

@@ -12,8 +12,9 @@ pub struct Gridded {
     pub table: ForceTable,
     /// The greatest distance of a sample from the nearest depth and lateral position of the grid, m.
     pub largest_shift: [f64; 2],
-    /// The root mean square of what the planes leave of the samples at their poses, N; 0 where each pose has one sample.
-    pub residual: Force<f64>,
+    /// The root mean square of what the planes leave of the samples at their poses, N; 0 where each pose has one sample, none of a force
+    /// that is not there.
+    pub residual: Force<Option<f64>>,
 }
 
 /// A sample: depth, lateral position (m), normal and lateral force (N).
@@ -23,13 +24,14 @@ type Sample = [f64; 4];
 const RANK: f64 = 1e-12;
 
 /// The forces at the poses of a grid with these `steps` of depth and lateral position, m: at each pose that of a plane through the samples
-/// less than a step away in both, with the weight (1 − |u|³)³ of each distance u over its step.
+/// less than a step away in both, with the weight (1 − |u|³)³ of each distance u over its step. Of the normal force alone unless the
+/// samples have `has_lateral` forces.
 ///
 /// # Errors
 /// A step that is not above 0; a pose of the grid without a sample.
 ///
 /// Implements: MAP-080, MAP-081.
-pub fn gridded(samples: &[Sample], steps: [f64; 2]) -> Result<Gridded, Refusal> {
+pub fn gridded(samples: &[Sample], has_lateral: bool, steps: [f64; 2]) -> Result<Gridded, Refusal> {
     for step in steps {
         let refusal = Refusal::value("grid", step, "a finite number of metres above 0");
         refusal.when(!(step > 0.0 && step.is_finite()))?;
@@ -65,13 +67,14 @@ pub fn gridded(samples: &[Sample], steps: [f64; 2]) -> Result<Gridded, Refusal> 
         libm::sqrt(squares / samples.len() as f64)
     };
     Ok(Gridded {
-        table: ForceTable::new(
+        table: ForceTable::of_channels(
             depths.clone(),
             laterals.clone(),
-            Force::new(matrix(1), matrix(0)),
+            matrix(0),
+            has_lateral.then(|| matrix(1)),
         )?,
         largest_shift: [shift(0), shift(1)],
-        residual: Force::new(residual(1), residual(0)),
+        residual: Force::new(has_lateral.then(|| residual(1)), Some(residual(0))),
     })
 }
 
@@ -221,13 +224,13 @@ mod tests {
         };
         let scattered = (0..500).map(anywhere).map(sample).collect();
         for (samples, most) in [(samples(), 0.0), (scattered, 1.0)] {
-            let found = gridded(&samples, [1e-3, 0.5e-3]).unwrap();
+            let found = gridded(&samples, true, [1e-3, 0.5e-3]).unwrap();
             let (table, exact) = (&found.table, self::samples());
             assert_eq!((table.depths().len(), table.laterals().len()), (3, 9));
-            for (row, column, normal) in table.forces().normal.entries() {
+            for (row, column, normal) in table.normal().entries() {
                 let [_, _, expected, along] = exact[9 * row + column];
                 assert!((normal - expected).abs() < 1e-12, "{normal} {expected}");
-                let lateral = table.forces().lateral.row(row)[column];
+                let lateral = table.lateral().unwrap().row(row)[column];
                 assert!((lateral - along).abs() < 1e-12);
             }
             // Half a step, where samples are everywhere.
@@ -237,11 +240,11 @@ mod tests {
                     "{found}"
                 );
             }
-            assert!(found.residual.normal < 1e-12);
+            assert!(found.residual.normal.unwrap() < 1e-12);
         }
     }
 
-    // Verifies: MAP-080. Several samples of a pose are averaged; the residual is theirs.
+    // Verifies: MAP-080, MAP-083. Several samples of a pose are averaged; the residual is theirs.
     #[test]
     fn samples_of_one_pose_are_averaged() {
         let twice = [
@@ -249,11 +252,20 @@ mod tests {
             [1e-3, 0.0, 1.5, 0.0],
             [1e-3, 1e-3, 2.0, 0.5],
         ];
-        let found = gridded(&twice, [1e-3, 1e-3]).unwrap();
-        let normal = found.table.forces().normal.row(0);
+        let found = gridded(&twice, true, [1e-3, 1e-3]).unwrap();
+        let normal = found.table.normal().row(0);
         assert!((normal[0] - 1.25).abs() < 1e-12 && (normal[1] - 2.0).abs() < 1e-12);
-        assert!((found.residual.normal - (0.125f64 / 3.0).sqrt()).abs() < 1e-12);
-        assert_eq!(found.residual.lateral, 0.0);
+        assert!((found.residual.normal.unwrap() - (0.125f64 / 3.0).sqrt()).abs() < 1e-12);
+        assert_eq!(found.residual.lateral, Some(0.0));
+        let one = gridded(&twice, false, [1e-3, 1e-3]).unwrap();
+        assert_eq!(
+            (one.table.normal(), one.table.lateral()),
+            (found.table.normal(), None)
+        );
+        assert_eq!(
+            (one.residual.normal, one.residual.lateral),
+            (found.residual.normal, None)
+        );
     }
 
     // Verifies: MAP-080.
@@ -261,17 +273,17 @@ mod tests {
     fn a_pose_without_a_sample_is_refused() {
         let mut few = samples();
         few.remove(4);
-        let error = gridded(&few, [1e-3, 0.5e-3]).unwrap_err().to_string();
+        let error = gridded(&few, true, [1e-3, 0.5e-3]).unwrap_err().to_string();
         let expected = "the grid has 27 poses, and there are 26 samples; choose a coarser grid";
         assert_eq!(error, expected);
         let twice = few[0];
         few.push(twice);
-        let error = gridded(&few, [1e-3, 0.5e-3]).unwrap_err().to_string();
+        let error = gridded(&few, true, [1e-3, 0.5e-3]).unwrap_err().to_string();
         let expected =
             "no sample near depth 1.0 mm, lateral 0.0 mm of the grid; choose a coarser grid";
         assert_eq!(error, expected);
-        assert!(gridded(&few, [2e-3, 1e-3]).is_ok());
-        assert!(gridded(&few, [0.0, 1e-3]).is_err());
-        assert!(gridded(&few, [1e-3, f64::NAN]).is_err());
+        assert!(gridded(&few, true, [2e-3, 1e-3]).is_ok());
+        assert!(gridded(&few, true, [0.0, 1e-3]).is_err());
+        assert!(gridded(&few, true, [1e-3, f64::NAN]).is_err());
     }
 }

@@ -53,7 +53,7 @@ impl ForceTable {
     /// nearest border cell, continued.
     ///
     /// # Errors
-    /// A pose that is not finite; an axis with a single entry; a force beyond the range of f64.
+    /// A pose that is not finite; an axis with a single entry; a force beyond the range of f64; as [`ForceTable::both`].
     ///
     /// Implements: MAP-060, MAP-061.
     pub fn force(&self, depth: f64, lateral: f64) -> Result<Force<f64>, Refusal> {
@@ -79,12 +79,12 @@ impl ForceTable {
                 Refusal::state(found, "")
             })
         };
-        let Force { lateral, normal } = self.forces().as_ref().map(value);
+        let Force { lateral, normal } = self.both()?.map(value);
         Ok(Force::new(lateral?, normal?))
     }
 
-    /// The forces on the probe at `depth` (m) and each of `positions` (m, in any order), N: linear in the depth
-    /// between two rows, then linear in the position between two columns. A row within
+    /// The forces on the probe at `depth` (m) and each of `positions` (m, in any order), N, no lateral ones if the table has none: linear
+    /// in the depth between two rows, then linear in the position between two columns. A row within
     /// [`SAME_POSITION`] of the depth, and a column within it of a position, count to the bit.
     ///
     /// # Errors
@@ -109,7 +109,10 @@ impl ForceTable {
                 |column: &Place| column.blend(|column| row.blend(|row| matrix.row(row)[column]));
             columns.iter().map(force).collect()
         };
-        Ok(self.forces().as_ref().map(along))
+        Ok(Force {
+            lateral: self.lateral().map_or(Vec::new(), along),
+            normal: along(self.normal()),
+        })
     }
 }
 
@@ -232,8 +235,8 @@ mod tests {
             let positions: Vec<f64> = table.laterals().iter().map(|x| x + off).collect();
             for (row, &depth) in table.depths().iter().enumerate() {
                 let found = table.sweep(depth + off, &positions).unwrap();
-                assert_eq!(found.normal, table.forces().normal.row(row));
-                assert_eq!(found.lateral, table.forces().lateral.row(row));
+                assert_eq!(found.normal, table.normal().row(row));
+                assert_eq!(found.lateral, table.lateral().unwrap().row(row));
             }
         }
     }

@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use super::{Certificate, ForceMap, ForceTable, Matrix, Measurement, Source, of_phantom};
 use crate::file::{check_schema, from_json, to_json};
-use crate::force::Force;
 use crate::phantom::{Phantom, PhantomParts};
 use crate::refusal::Refusal;
 
@@ -38,7 +37,8 @@ pub(super) struct Document {
     depths_m: Vec<f64>,
     laterals_m: Vec<f64>,
     normal_force_n: Matrix,
-    lateral_force_n: Matrix,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    lateral_force_n: Option<Matrix>,
     certificate: Option<Certificate>,
 }
 
@@ -83,8 +83,8 @@ impl From<ForceMap> for Document {
             phantom: map.phantom.map(PhantomParts::from),
             depths_m: map.table.depths().into(),
             laterals_m: map.table.laterals().into(),
-            normal_force_n: map.table.forces().normal.clone(),
-            lateral_force_n: map.table.forces().lateral.clone(),
+            normal_force_n: map.table.normal().clone(),
+            lateral_force_n: map.table.lateral().cloned(),
             certificate,
         }
     }
@@ -108,8 +108,12 @@ impl TryFrom<Document> for ForceMap {
                 return Err(Refusal::state("certificate is there", expected));
             }
         };
-        let forces = Force::new(document.lateral_force_n, document.normal_force_n);
-        let table = ForceTable::new(document.depths_m, document.laterals_m, forces)?;
+        let table = ForceTable::of_channels(
+            document.depths_m,
+            document.laterals_m,
+            document.normal_force_n,
+            document.lateral_force_n,
+        )?;
         let phantom = document
             .phantom
             .map(Phantom::new)

@@ -118,8 +118,8 @@ impl Measurement {
 /// let map = ForceMap::new(source, Some(Phantom::builtin("6.6")?), forces)?;
 ///
 /// assert_eq!((map.table().depths(), map.table().laterals()), (&[0.001, 0.004][..], &[0.0, 0.005][..]));
-/// assert_eq!(map.table().forces().normal.row(1), [1.5, 1.25]);
-/// assert_eq!(map.table().forces().lateral.values(), [0.0, 0.0, 0.0, -0.125]);
+/// assert_eq!(map.table().normal().row(1), [1.5, 1.25]);
+/// assert_eq!(map.table().both()?.lateral.values(), [0.0, 0.0, 0.0, -0.125]);
 /// // Measured, by this version, on a phantom that is known.
 /// assert!(map.certificate().is_none() && matches!(map.source(), Source::Measured(_)));
 /// assert_eq!(map.program_version(), env!("CARGO_PKG_VERSION"));
@@ -145,7 +145,7 @@ impl ForceMap {
     /// A map of `table`, made by this version of the program.
     ///
     /// # Errors
-    /// The phantom is missing for a computed map, or does not let the probe stand at one of the poses; the
+    /// The phantom or the lateral forces are missing for a computed map, or the phantom does not let the probe stand at one of the poses; the
     /// certificate does not fit the forces; the half-width of a smoothing is not above 0.
     ///
     /// Implements: MAP-006, MAP-002, MAP-074.
@@ -169,6 +169,9 @@ impl ForceMap {
                 certificate.check(table.depths(), table.laterals())?;
                 let expected = "give the phantom that the finite elements computed";
                 Refusal::state("phantom is missing", expected).when(phantom.is_none())?;
+                let expected = "give both forces of a computed map";
+                let missing = Refusal::state("lateral_force_n is missing", expected);
+                missing.when(table.lateral().is_none())?;
             }
             Source::Measured(of) => {
                 if let Some(width) = of.smoothed_half_width {

@@ -59,6 +59,11 @@ impl<'a> Hypotheses<'a> {
         Ok(Hypotheses { without, with })
     }
 
+    /// Whether both tables have lateral forces, so that those of a record count.
+    pub fn have_lateral(&self) -> bool {
+        self.without.lateral().is_some() && self.with.lateral().is_some()
+    }
+
     /// The forces without inclusion, F₀.
     pub fn without(&self) -> &'a ForceTable {
         self.without

@@ -14,8 +14,9 @@ const FEWEST: usize = 4;
 pub struct Smoothed {
     /// The smoothed forces.
     pub table: ForceTable,
-    /// √(Σr²/ν) of the residuals r, N: the standard deviation of the noise, if the forces are parabolas in each window.
-    pub noise_sd: Force<f64>,
+    /// √(Σr²/ν) of the residuals r, N: the standard deviation of the noise, if the forces are parabolas in each window; none of a force
+    /// that is not there.
+    pub noise_sd: Force<Option<f64>>,
     /// ν, of each channel: how many forces there are more than parameters that were fitted to them.
     pub degrees_of_freedom: f64,
 }
@@ -92,15 +93,16 @@ impl ForceTable {
                 windows[column].smooth(forces.row(row))
             })
         };
-        let forces = self.forces().as_ref().map(smooth);
-        let table = ForceTable::new(depths.into(), laterals.into(), forces)?;
+        let (normal, lateral) = (smooth(self.normal()), self.lateral().map(smooth));
+        let table = ForceTable::of_channels(depths.into(), laterals.into(), normal, lateral)?;
         let residual = self.minus(&table)?;
         // A least-squares fit has as much variance at a point as the point's own weight.
         let free: f64 = windows.iter().map(|window| 1.0 - window.own).sum();
         let degrees_of_freedom = depths.len() as f64 * free;
-        let noise_sd = residual.forces().as_ref().map(|residual| {
-            let squares: f64 = residual.values().iter().map(|r| r * r).sum();
-            (squares / degrees_of_freedom).sqrt()
+        let channels = Force::new(residual.lateral(), Some(residual.normal()));
+        let noise_sd = channels.map(|residual| {
+            let squares: f64 = residual?.values().iter().map(|r| r * r).sum();
+            Some((squares / degrees_of_freedom).sqrt())
         });
         Ok(Smoothed {
             table,
@@ -137,12 +139,8 @@ mod tests {
             [36.0, 108.0, 160.0, 187.0, 256.0, 167.0, 77.0, 56.0, 70.0].map(|f| f / 35.0);
         let found = table(&steps(9), &forces).smoothed(1e-3).unwrap();
         for (at, expected) in expected.into_iter().enumerate() {
-            let [lateral, normal] = found
-                .table
-                .forces()
-                .as_ref()
-                .into_array()
-                .map(|of| of.values()[at]);
+            let both = found.table.both().unwrap();
+            let [lateral, normal] = both.into_array().map(|of| of.values()[at]);
             // Weights of a few units times forces below 10 N, each rounded some ten times.
             assert_near(normal, expected, 1e-13);
             assert_near(lateral, -2.0 * expected, 2e-13);
@@ -154,8 +152,8 @@ mod tests {
             .map(|(f, e)| (f - e) * (f - e))
             .sum();
         let sd = (squares / free).sqrt();
-        assert_near(found.noise_sd.normal, sd, 1e-13);
-        assert_near(found.noise_sd.lateral, 2.0 * sd, 2e-13);
+        assert_near(found.noise_sd.normal.unwrap(), sd, 1e-13);
+        assert_near(found.noise_sd.lateral.unwrap(), 2.0 * sd, 2e-13);
     }
 
     // Verifies: MAP-070.
@@ -167,10 +165,10 @@ mod tests {
         let forces = laterals.map(|x| 1.5 - 80.0 * x + 4e4 * x * x);
         for half_width in [4e-3, 9e-3, 1.0] {
             let found = table(&laterals, &forces).smoothed(half_width).unwrap();
-            for (found, expected) in std::iter::zip(found.table.forces().normal.values(), forces) {
+            for (found, expected) in std::iter::zip(found.table.normal().values(), forces) {
                 assert!((found - expected).abs() < 1e-13, "{found} {expected}");
             }
-            assert!(found.noise_sd.normal < 1e-13);
+            assert!(found.noise_sd.normal.unwrap() < 1e-13);
         }
     }
 
@@ -185,7 +183,24 @@ mod tests {
         let found = table(&laterals, &forces).smoothed(0.5e-3).unwrap();
         // The variance of Σr²/ν for white noise is about 2σ⁴/ν: σ is found within 5 standard errors of √(1/2ν).
         let error = (0.5 / found.degrees_of_freedom).sqrt();
-        assert_near(found.noise_sd.normal / 0.02, 1.0, 5.0 * error);
+        assert_near(found.noise_sd.normal.unwrap() / 0.02, 1.0, 5.0 * error);
+    }
+
+    // Verifies: MAP-083.
+    #[test]
+    fn the_normal_force_alone_is_smoothed_as_beside_another() {
+        let both = table(&steps(9), &[1.0, 4.0, 2.0, 8.0, 5.0, 7.0, 1.0, 0.0, 3.0]);
+        let (depths, laterals) = (both.depths().to_vec(), both.laterals().to_vec());
+        let one = ForceTable::of_channels(depths, laterals, both.normal().clone(), None).unwrap();
+        let [one, both] = [one, both].map(|table| table.smoothed(1e-3).unwrap());
+        assert_eq!(
+            (one.table.normal(), one.table.lateral()),
+            (both.table.normal(), None)
+        );
+        assert_eq!(
+            (one.noise_sd.normal, one.noise_sd.lateral),
+            (both.noise_sd.normal, None)
+        );
     }
 
     // Verifies: MAP-071.

@@ -145,15 +145,16 @@ impl TryFrom<Vec<Vec<f64>>> for Matrix {
     }
 }
 
-/// The normal and lateral force on the probe at every pose of a grid, N.
+/// The normal and lateral force on the probe at every pose of a grid, N; of a sensor of one axis the normal force alone.
 ///
-/// Both axes increase, every number is finite, and both matrices have one row for each depth and one
+/// Both axes increase, every number is finite, and each matrix has one row for each depth and one
 /// column for each lateral position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ForceTable {
     depths: Vec<f64>,
     laterals: Vec<f64>,
-    forces: Force<Matrix>,
+    normal: Matrix,
+    lateral: Option<Matrix>,
 }
 
 impl ForceTable {
@@ -165,9 +166,34 @@ impl ForceTable {
     ///
     /// Implements: MAP-001, MAP-002, MAP-026, CON-007.
     pub fn new(
+        depths: Vec<f64>,
+        laterals: Vec<f64>,
+        forces: Force<Matrix>,
+    ) -> Result<ForceTable, Refusal> {
+        ForceTable::of_channels(depths, laterals, forces.normal, Some(forces.lateral))
+    }
+
+    /// As [`ForceTable::new`], of normal forces and, where they were measured, lateral ones.
+    ///
+    /// ```
+    /// use palpate::force_map::{ForceTable, Matrix};
+    ///
+    /// let normal = Matrix::from_fn(1, 2, |_, column| 1.5 + 0.25 * column as f64);
+    /// let table = ForceTable::of_channels(vec![0.004], vec![0.0, 0.002], normal, None)?;
+    /// assert_eq!((table.normal().row(0), table.lateral()), (&[1.5, 1.75][..], None));
+    /// assert!(table.both().is_err());
+    /// # Ok::<(), palpate::refusal::Refusal>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ForceTable::new`].
+    ///
+    /// Implements: MAP-083.
+    pub fn of_channels(
         mut depths: Vec<f64>,
         mut laterals: Vec<f64>,
-        forces: Force<Matrix>,
+        normal: Matrix,
+        lateral: Option<Matrix>,
     ) -> Result<ForceTable, Refusal> {
         // −0 and 0 are one position; adding 0 leaves one way to write it.
         for position in depths.iter_mut().chain(&mut laterals) {
@@ -175,12 +201,15 @@ impl ForceTable {
         }
         check_axes(&depths, &laterals)?;
         let shape = [depths.len(), laterals.len()];
-        (forces.normal).check("normal_force_n", shape, f64::NEG_INFINITY)?;
-        (forces.lateral).check("lateral_force_n", shape, f64::NEG_INFINITY)?;
+        normal.check("normal_force_n", shape, f64::NEG_INFINITY)?;
+        if let Some(lateral) = &lateral {
+            lateral.check("lateral_force_n", shape, f64::NEG_INFINITY)?;
+        }
         Ok(ForceTable {
             depths,
             laterals,
-            forces,
+            normal,
+            lateral,
         })
     }
 
@@ -194,24 +223,42 @@ impl ForceTable {
         &self.laterals
     }
 
-    /// The forces, N: depths × lateral positions.
-    pub fn forces(&self) -> &Force<Matrix> {
-        &self.forces
+    /// The normal forces, N: depths × lateral positions.
+    pub fn normal(&self) -> &Matrix {
+        &self.normal
     }
 
-    /// The forces at a stored depth (m), one at each lateral position, N.
+    /// The lateral forces, N: depths × lateral positions; none if they were not measured.
+    pub fn lateral(&self) -> Option<&Matrix> {
+        self.lateral.as_ref()
+    }
+
+    /// Both forces, N, for what needs both.
     ///
     /// # Errors
-    /// No stored depth lies within [`SAME_POSITION`] of `depth`.
+    /// The table has no lateral forces.
+    ///
+    /// Implements: MAP-084.
+    pub fn both(&self) -> Result<Force<&Matrix>, Refusal> {
+        let found = "the map has no lateral forces, which are needed here";
+        let missing = || Refusal::state(found, "give a map with both forces");
+        let lateral = self.lateral().ok_or_else(missing)?;
+        Ok(Force::new(lateral, &self.normal))
+    }
+
+    /// Both forces at a stored depth (m), one at each lateral position, N.
+    ///
+    /// # Errors
+    /// No stored depth lies within [`SAME_POSITION`] of `depth`; as [`ForceTable::both`].
     ///
     /// Implements: MAP-012.
     pub fn row(&self, depth: f64) -> Result<Force<&[f64]>, Refusal> {
         let row = place_of("depth", &self.depths, depth)?;
-        Ok(self.forces.as_ref().map(|force| force.row(row)))
+        Ok(self.both()?.map(|force| force.row(row)))
     }
 
     /// This table minus `reference`, pose by pose: with the map of a phantom and the map of the
-    /// empty one, the signal F₁ − F₀ of the paper's §2.
+    /// empty one, the signal F₁ − F₀ of the paper's §2. Of the normal force alone if either has no other.
     ///
     /// # Errors
     /// The two are not over the same poses; a difference is not finite.
@@ -219,12 +266,13 @@ impl ForceTable {
     /// Implements: MAP-011.
     pub fn minus(&self, reference: &ForceTable) -> Result<ForceTable, Refusal> {
         check_same_poses(self, reference)?;
-        let forces = self.forces.as_ref().zip(reference.forces.as_ref());
-        let difference = forces.map(|(a, b)| Matrix {
+        let difference = |(a, b): (&Matrix, &Matrix)| Matrix {
             columns: a.columns,
             values: a.values.iter().zip(&b.values).map(|(a, b)| a - b).collect(),
-        });
-        ForceTable::new(self.depths.clone(), self.laterals.clone(), difference)
+        };
+        let lateral = self.lateral().zip(reference.lateral()).map(difference);
+        let normal = difference((&self.normal, &reference.normal));
+        ForceTable::of_channels(self.depths.clone(), self.laterals.clone(), normal, lateral)
     }
 
     /// This table over x ≥ 0, extended to x < 0 by symmetry: the normal force is even in x, the
@@ -239,7 +287,8 @@ impl ForceTable {
         let first = self.laterals[0];
         let expected = "0 in a map to be extended by symmetry";
         Refusal::value("laterals_m[0]", first, expected).when(first != 0.0)?;
-        for (depth, forces) in self.depths.iter().zip(self.forces.lateral.rows()) {
+        let at_zero = self.lateral().into_iter().flat_map(Matrix::rows);
+        for (depth, forces) in self.depths.iter().zip(at_zero) {
             let force = forces[0];
             let found = format!("lateral force {force} N at depth {depth} m, x = 0");
             let expected =
@@ -260,25 +309,24 @@ impl ForceTable {
         Ok(ForceTable {
             depths: self.depths.clone(),
             laterals: odd(&self.laterals),
-            forces: Force {
-                lateral: Matrix {
-                    columns: columns.len(),
-                    values: self.forces.lateral.rows().flat_map(odd).collect(),
-                },
-                normal: self.forces.normal.at_columns(&columns),
-            },
+            normal: self.normal.at_columns(&columns),
+            lateral: self.lateral().map(|lateral| Matrix {
+                columns: columns.len(),
+                values: lateral.rows().flat_map(odd).collect(),
+            }),
         })
     }
 
     /// The table of the mirror image, whose `columns` are those of this one from the last to the first.
     pub(super) fn mirror_image(&self, columns: &[usize]) -> ForceTable {
-        let mut forces = self.forces.as_ref().map(|force| force.at_columns(columns));
-        let lateral = &mut forces.lateral.values;
-        lateral.iter_mut().for_each(|force| *force = 0.0 - *force);
+        let mut lateral = self.lateral().map(|force| force.at_columns(columns));
+        let values = lateral.iter_mut().flat_map(|force| &mut force.values);
+        values.for_each(|force| *force = 0.0 - *force);
         ForceTable {
             depths: self.depths.clone(),
             laterals: self.laterals.iter().rev().map(|x| 0.0 - x).collect(),
-            forces,
+            normal: self.normal.at_columns(columns),
+            lateral,
         }
     }
 
@@ -301,11 +349,11 @@ impl ForceTable {
             .map(|&column| self.laterals[column])
             .collect();
         check_axis("laterals_m", &laterals)?;
-        let forces = self.forces.as_ref().map(|force| force.at_columns(columns));
         Ok(ForceTable {
             depths: self.depths.clone(),
             laterals,
-            forces,
+            normal: self.normal.at_columns(columns),
+            lateral: self.lateral().map(|force| force.at_columns(columns)),
         })
     }
 }

@@ -233,9 +233,9 @@ fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {
     };
     for force in [1e-9, -1e-9, -0.0] {
         let mirrored = with(force).mirrored().unwrap();
-        assert_eq!(mirrored.forces().lateral.row(1), [-0.2, 0.0, 0.2]);
+        assert_eq!(mirrored.lateral().unwrap().row(1), [-0.2, 0.0, 0.2]);
         // A force of +0 stays +0 on both sides: −0 would show in a diff.
-        let forces = mirrored.forces().lateral.values().iter();
+        let forces = mirrored.lateral().unwrap().values().iter();
         let zeros: Vec<_> = forces.filter(|&&force| force == 0.0).collect();
         assert!(zeros.len() == 4 && zeros.iter().all(|zero| zero.is_sign_positive()));
     }
@@ -277,10 +277,62 @@ fn a_signal_is_the_map_minus_its_reference() {
     let reference = measured(None, table);
     let signal = map.signal(&reference).unwrap();
     assert_eq!(signal.laterals(), map.table().laterals());
-    assert_eq!(signal.forces().normal.row(0), [0.0, 0.1, 0.2]);
+    assert_eq!(signal.normal().row(0), [0.0, 0.1, 0.2]);
     let expected = [1.0 - 0.75, 1.1 - 0.5, 1.2 - 0.25];
-    assert_eq!(signal.forces().normal.row(1), expected);
-    assert_eq!(signal.forces().lateral, map.table().forces().lateral);
+    assert_eq!(signal.normal().row(1), expected);
+    assert_eq!(signal.lateral().unwrap(), map.table().lateral().unwrap());
+}
+
+// Verifies: MAP-083, MAP-084.
+#[test]
+fn a_lateral_force_that_was_not_measured_is_absent_from_all_that_follows() {
+    let whole = table();
+    let (depths, laterals) = (whole.depths().to_vec(), whole.laterals().to_vec());
+    let one = ForceTable::of_channels(depths, laterals, whole.normal().clone(), None).unwrap();
+    assert_ne!(one, whole);
+    for (one, whole) in [
+        (one.minus(&one), whole.minus(&whole)),
+        (one.minus(&whole), whole.minus(&whole)),
+        (whole.minus(&one), whole.minus(&whole)),
+        (one.mirrored(), whole.mirrored()),
+        (one.at_columns(&[0, 2]), whole.at_columns(&[0, 2])),
+        (
+            Ok(one.mirror_image(&[2, 1, 0])),
+            Ok(whole.mirror_image(&[2, 1, 0])),
+        ),
+    ] {
+        let (one, whole) = (one.unwrap(), whole.unwrap());
+        assert_eq!(
+            (one.normal(), one.laterals()),
+            (whole.normal(), whole.laterals())
+        );
+        assert_eq!((one.lateral(), whole.lateral().is_some()), (None, true));
+    }
+    let sweep = one.sweep(0.0005, &[0.001]).unwrap();
+    assert_eq!((sweep.lateral.len(), sweep.normal.len()), (0, 1));
+    let map = measured(None, one.clone());
+    assert!(!map.to_json().contains("lateral_force_n"));
+    assert_eq!(ForceMap::from_json(&map.to_json(), "map.json"), Ok(map));
+    assert_eq!(
+        ForceTable::from_csv(&one.to_csv(), "gel.csv"),
+        Ok(one.clone())
+    );
+    assert_eq!(one.to_csv().lines().nth(6), Some("1.0,5.0,1.2"));
+    // What needs both.
+    let missing =
+        "the map has no lateral forces, which are needed here; give a map with both forces";
+    assert_error(one.both(), missing);
+    assert_error(one.row(0.0), missing);
+    assert_error(one.force(0.0, 0.0), missing);
+    assert_error(crate::servo::LoadedTable::new(&one), missing);
+    let Source::FiniteElements { certificate } = computed(|_| ()).unwrap().source else {
+        panic!("not computed");
+    };
+    let source = Source::FiniteElements { certificate };
+    assert_error(
+        ForceMap::new(source, Phantom::builtin("2.6").ok(), one),
+        "lateral_force_n is missing; give both forces of a computed map",
+    );
 }
 
 // Verifies: MAP-002, MAP-026, MAP-011.
@@ -440,12 +492,12 @@ proptest! {
                 let of = |matrix: &Matrix, column: usize| matrix.row(row)[column];
                 prop_assert_eq!(whole.laterals()[left], -half.laterals()[column]);
                 prop_assert_eq!(whole.laterals()[right], half.laterals()[column]);
-                let normal = of(&half.forces().normal, column).to_bits();
-                prop_assert_eq!(of(&whole.forces().normal, left).to_bits(), normal);
-                prop_assert_eq!(of(&whole.forces().normal, right).to_bits(), normal);
-                let lateral = of(&half.forces().lateral, column);
-                prop_assert_eq!(of(&whole.forces().lateral, left), -lateral);
-                prop_assert_eq!(of(&whole.forces().lateral, right).to_bits(), lateral.to_bits());
+                let normal = of(half.normal(), column).to_bits();
+                prop_assert_eq!(of(whole.normal(), left).to_bits(), normal);
+                prop_assert_eq!(of(whole.normal(), right).to_bits(), normal);
+                let lateral = of(half.lateral().unwrap(), column);
+                prop_assert_eq!(of(whole.lateral().unwrap(), left), -lateral);
+                prop_assert_eq!(of(whole.lateral().unwrap(), right).to_bits(), lateral.to_bits());
             }
         }
     }
@@ -461,11 +513,8 @@ fn a_map_cut_to_some_positions_keeps_their_columns() {
     for row in 0..2 {
         for (kept, column) in [(0, 0), (1, 2)] {
             let bits = |matrix: &Matrix, column: usize| matrix.row(row)[column].to_bits();
-            let pairs = cut
-                .table()
-                .forces()
-                .as_ref()
-                .zip(map.table().forces().as_ref());
+            let [ours, whole] = [&cut, &map].map(|map| map.table().both().unwrap());
+            let pairs = ours.zip(whole);
             for (ours, whole) in pairs.into_array() {
                 assert_eq!(bits(ours, kept), bits(whole, column));
             }

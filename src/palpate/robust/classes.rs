@@ -6,9 +6,9 @@ use std::fmt;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
+use super::channels;
 use super::modes::Modes;
 use crate::force::Force;
-use crate::trace::design::channels;
 
 /// A part of a disturbance.
 ///

@@ -9,13 +9,12 @@ use super::classes::{CLASSES, Class, Covariance, Disturbances, Part, SUPPORT_ALO
 use super::evidence::{Evidence, Signal, WeightedClass, evidence};
 use super::gates::wrong_level;
 use super::sweep::{Cleaned, PreparedSweep, prepared};
-use super::{RobustAnswer, RobustQuestion, RobustSignal, RobustSweep};
+use super::{RobustAnswer, RobustQuestion, RobustSignal, RobustSweep, channels};
 use crate::detect::{Decision, DetectError, ErrorRates, error_rates, map_threshold, posterior};
 use crate::force::Force;
 use crate::force_map::ForceTable;
 use crate::refusal::Refusal;
 use crate::stats::noncentral::chi_square;
-use crate::trace::design::channels;
 use crate::trace::{Cause, refused};
 
 /// A record that fits a class and hypothesis is farther from its mean with this probability.

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use serde::Deserialize;
 
 use super::classes::Part;
+use super::expected;
 use crate::bank::MESH_SIZE;
 use crate::fem::{Contact, FemError, Model};
 use crate::file;
@@ -13,7 +14,7 @@ use crate::force_map::{ForceMap, ForceTable};
 use crate::phantom::{Phantom, PhantomParts, Support};
 use crate::refusal::Refusal;
 use crate::trace::Record;
-use crate::trace::design::{difference, expected};
+use crate::trace::design::difference;
 
 /// What is uncertain of a gel, at one depth of the probe.
 ///

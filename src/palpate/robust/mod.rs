@@ -39,7 +39,7 @@ use crate::force::Force;
 use crate::force_map::{ForceTable, Hypotheses};
 use crate::refusal::Refusal;
 use crate::stats::error::{check_positive, check_probability, in_range};
-use crate::trace::design::{difference, expected};
+use crate::trace::design::{self, difference, stacked};
 use crate::trace::{Cause, Record, refused};
 
 /// What is known of a record, and when an answer is sure.
@@ -231,6 +231,24 @@ impl RobustQuestion<'_> {
         let detector = RobustDetector::new(*self, without, sweeps, &signals)?;
         Ok((detector, hypotheses))
     }
+}
+
+/// The forces that `map` expects of `record` at `depth` (m), N, stacked; lateral ones of 0 where the map has none, which then do not
+/// count.
+///
+/// # Errors
+/// As [`Record::expected`].
+///
+/// Implements: ROB-006.
+fn expected(record: &Record, map: &ForceTable, depth: f64) -> Result<Vec<f64>, Refusal> {
+    let mut expected = record.expected(map, depth)?;
+    expected.lateral.resize(expected.normal.len(), 0.0);
+    Ok(stacked(expected))
+}
+
+/// The channels of stacked samples of both.
+fn channels(stacked: &[f64]) -> Force<&[f64]> {
+    design::channels(stacked, stacked.len() / 2)
 }
 
 fn records<'a>(sweeps: &[RobustSweep<'a>]) -> Vec<Force<&'a [f64]>> {

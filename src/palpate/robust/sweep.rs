@@ -6,12 +6,12 @@ use super::classes::Undisturbed;
 use super::gates;
 use super::gel::{GelChange, GelUncertainty};
 use super::modes::{Modes, Spectrum};
-use super::{RobustQuestion, RobustSweep};
+use super::{RobustQuestion, RobustSweep, channels, expected};
 use crate::force::Force;
 use crate::force_map::ForceTable;
 use crate::refusal::Refusal;
 use crate::trace::Cause;
-use crate::trace::design::{channels, depth_slope, expected};
+use crate::trace::design::depth_slope;
 
 /// The radius of the probe where no phantom says it, m: the paper's.
 const RADIUS: f64 = 6.5e-3;

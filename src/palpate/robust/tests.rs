@@ -18,7 +18,7 @@ use crate::bank::{Bank, BankPlan};
 use crate::detect::Decision;
 use crate::fem::{Contact, Model};
 use crate::force::Force;
-use crate::force_map::ForceTable;
+use crate::force_map::{ForceMap, ForceTable, Hypotheses, Matrix};
 use crate::phantom::Phantom;
 use crate::stats::random::Generator;
 use crate::trace::{Cause, Record};
@@ -734,4 +734,53 @@ fn a_record_of_one_channel_is_judged_as_if_the_other_had_infinite_noise() {
         "{}",
         rows.table()
     );
+}
+
+// Verifies: ROB-006.
+#[test]
+fn maps_of_the_normal_force_alone_judge_a_record_of_it() {
+    let bank = bank();
+    let over = positions(81);
+    let table = |map: &ForceMap, has_lateral: bool| {
+        let (depth, laterals) = (bank.depth(), map.table().laterals());
+        let Force { lateral, normal } = map.table().row(depth).unwrap();
+        let matrix = |row: &[f64]| Matrix::new(row.len(), row.to_vec()).unwrap();
+        let lateral = has_lateral.then(|| matrix(lateral));
+        ForceTable::of_channels(vec![depth], laterals.to_vec(), matrix(normal), lateral).unwrap()
+    };
+    let pair = [bank.reference(), &bank.maps()[7]];
+    let [maps, alone] = [true, false].map(|has_lateral| pair.map(|map| table(map, has_lateral)));
+    let maps = [&maps[0], &maps[1]];
+    let judged = |[without, with]: [&ForceTable; 2], map: &ForceTable, has_lateral: bool| {
+        let forces = map.sweep(bank.depth(), &over).unwrap();
+        let pairs = forces.normal.iter().zip(noise(81, 3));
+        let normal: Vec<f64> = pairs.map(|(force, n)| force + 0.05 * n).collect();
+        let lateral = if has_lateral {
+            &forces.lateral[..]
+        } else {
+            &[]
+        };
+        let record = Record::new("sweep", &over, Force::new(lateral, &normal[..])).unwrap();
+        let hypotheses = Hypotheses::of_tables(without, with).unwrap();
+        let sweep = at_place(&bank, &record, None);
+        RobustQuestion::default().judge(hypotheses, &[sweep])
+    };
+    let [f0, f1] = [&alone[0], &alone[1]];
+    for map in maps {
+        let by_both = judged(maps, map, false).unwrap();
+        let by_one = judged([f0, f1], map, false).unwrap();
+        assert_eq!(by_one.decision, by_both.decision);
+        assert!(by_one.decision.is_some());
+        assert_eq!(by_one.noise_sd[0].lateral, None);
+        // What the lateral force of an even gel does to the normal one where its surface is tilted or rubs.
+        let apart = (by_one.theta - by_both.theta).abs();
+        assert!(
+            apart < 0.02 * by_both.theta.abs(),
+            "{apart} {}",
+            by_both.theta
+        );
+    }
+    let refused = judged([f0, f1], maps[1], true).unwrap_err().to_string();
+    let expected = "sweep: the record has lateral forces, and the maps have none; leave out those of the record";
+    assert_eq!(refused, expected);
 }

@@ -104,12 +104,14 @@ impl LoadedTable {
     /// not begin there.
     ///
     /// # Errors
-    /// Positions or forces that the kernel cannot hold, with row and column of the map, from 0; a force at the surface.
+    /// Positions or forces that the kernel cannot hold, with row and column of the map, from 0; a force at the surface; a map of the
+    /// normal force alone.
     ///
     /// Implements: SRV-044, SRV-047.
     pub fn new(map: &ForceTable) -> Result<LoadedTable, Refusal> {
-        check_forces("lateral_force_n", &map.forces().lateral, map.depths())?;
-        check_forces("normal_force_n", &map.forces().normal, map.depths())?;
+        let Force { lateral, normal } = map.both()?;
+        check_forces("lateral_force_n", lateral, map.depths())?;
+        check_forces("normal_force_n", normal, map.depths())?;
         let mut rounding = RoundingError::default();
         let surface = map.depths().first().is_some_and(|&first| first > 0.0);
         let depths = knots("depths_m", surface, map.depths(), &mut rounding)?;
@@ -117,8 +119,7 @@ impl LoadedTable {
 
         let rows_in_front = if surface { map.laterals().len() } else { 0 };
         let mut forces = vec![Force::ZERO; rows_in_front];
-        let normal = map.forces().normal.values();
-        for (&lateral, &normal) in map.forces().lateral.values().iter().zip(normal) {
+        for (&lateral, &normal) in lateral.values().iter().zip(normal.values()) {
             let force = Force::new(lateral, normal);
             forces.push(force.map(|force| rounded(force, &mut rounding.force_n)));
         }

@@ -54,9 +54,12 @@ pub fn in_words(unknown: &[Unknown]) -> String {
     }
 }
 
-/// The parts of a record, all in the same unit and over the same samples: of each part the lateral samples, and then the normal ones.
+/// The parts of a record, all in the same unit and over the same samples: of each part the lateral samples, if the record has any, and
+/// then the normal ones.
 #[derive(Debug, Clone)]
 pub struct Design {
+    /// Samples of a channel.
+    pub samples: usize,
     /// F_0.
     pub reference: Vec<f64>,
     /// F_p − F_0.
@@ -78,19 +81,15 @@ impl Design {
         without: &ForceTable,
         record: &Record,
     ) -> Result<Design, Refusal> {
-        let missing = Refusal::state(
-            "the exact model needs lateral forces, which the record lacks",
-            "use the robust model",
-        );
-        let missing = missing.in_file(record.file());
-        missing.when(record.forces().lateral.is_empty())?;
         let (depth, depths) = (question.depth, without.depths());
         let expected = |depth| expected(record, without, depth);
-        let reference = expected(depth)?;
+        let (reference, samples) = (expected(depth)?, record.positions().len());
+        let unknown = question.unknown;
         let mut design = Design {
+            samples,
             residual: difference(&stacked(record.forces()), &reference),
             template: vec![0.0; reference.len()],
-            nuisances: nuisances_of(question.unknown, depths, depth, &reference, expected)?,
+            nuisances: nuisances_of(unknown, depths, depth, (&reference, samples), expected)?,
             reference,
             depth_errors: Vec::new(),
         };
@@ -132,6 +131,7 @@ impl Design {
     fn map(&self, of: impl Fn(&[f64]) -> Vec<f64>) -> Design {
         let all = |parts: &[Vec<f64>]| parts.iter().map(|part| of(part)).collect();
         Design {
+            samples: self.samples,
             reference: of(&self.reference),
             residual: of(&self.residual),
             template: of(&self.template),
@@ -142,7 +142,7 @@ impl Design {
 
     /// The parts over the standard deviations of the noise.
     pub fn whitened(&self, noise_sd: Force<f64>) -> Design {
-        self.map(|part| whitened(part, noise_sd))
+        self.map(|part| whitened(part, self.samples, noise_sd))
     }
 
     /// What the depth may add to T at most.
@@ -154,9 +154,14 @@ impl Design {
         along.fold(0.0, f64::max)
     }
 
-    /// Samples of a channel.
-    pub fn samples(&self) -> usize {
-        self.residual.len() / 2
+    /// The channels of a part; no lateral samples where the record has none.
+    pub fn channels<'a>(&self, part: &'a [f64]) -> Force<&'a [f64]> {
+        channels(part, self.samples)
+    }
+
+    /// Whether the record has lateral forces.
+    pub fn has_lateral(&self) -> bool {
+        self.residual.len() > self.samples
     }
 
     /// The nuisances, and the template where it is `with_template`, one after the other.
@@ -174,7 +179,8 @@ impl Design {
         Ok((left, signals.rank()))
     }
 
-    /// The standard deviation of a sample, estimated from the record, whose parts are in newtons.
+    /// The standard deviation of a sample, estimated from the record, whose parts are in newtons; anything for a channel that it does not
+    /// have.
     ///
     /// # Errors
     /// Nothing is left of a channel: its noise is not known.
@@ -182,9 +188,13 @@ impl Design {
     /// Implements: TRC-068.
     pub fn noise_sd(&self) -> Result<Force<f64>, DetectError> {
         let (left, explained) = self.unexplained()?;
-        let degrees = self.samples() as f64 - 0.5 * explained as f64;
-        let sd = channels(&left).zip(channels(&self.residual));
+        let channels = self.residual.len() / self.samples;
+        let degrees = self.samples as f64 - explained as f64 / channels as f64;
+        let sd = self.channels(&left).zip(self.channels(&self.residual));
         let sd = sd.map(|(left, all)| {
+            if all.is_empty() {
+                return 1.0;
+            }
             let found = squares(left);
             // Less is rounding.
             if found > DEPENDENT * DEPENDENT * squares(all) {
@@ -199,22 +209,26 @@ impl Design {
     }
 }
 
-/// The lateral samples and then the normal ones.
+/// The lateral samples, if there are any, and then the normal ones.
 pub fn stacked(series: Force<impl AsRef<[f64]>>) -> Vec<f64> {
     [series.lateral.as_ref(), series.normal.as_ref()].concat()
 }
 
-/// The forces that `map` expects of `record` at `depth` (m), N, stacked.
+/// The forces that `map` expects of `record` at `depth` (m), N, stacked, in the channels that the record has.
 ///
 /// # Errors
 /// As [`Record::expected`].
+///
+/// Implements: TRC-015.
 pub fn expected(record: &Record, map: &ForceTable, depth: f64) -> Result<Vec<f64>, Refusal> {
-    record.expected(map, depth).map(stacked)
+    let mut expected = record.expected(map, depth)?;
+    expected.lateral.truncate(record.forces().lateral.len());
+    Ok(stacked(expected))
 }
 
-/// The channels of stacked samples.
-pub(crate) fn channels(stacked: &[f64]) -> Force<&[f64]> {
-    let (lateral, normal) = stacked.split_at(stacked.len() / 2);
+/// The channels of stacked samples, of which each has so many.
+pub(crate) fn channels(stacked: &[f64], samples: usize) -> Force<&[f64]> {
+    let (lateral, normal) = stacked.split_at(stacked.len() - samples);
     Force::new(lateral, normal)
 }
 
@@ -223,9 +237,9 @@ pub fn squares(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
-/// Stacked samples over the standard deviations of the noise.
-pub fn whitened(samples: &[f64], noise_sd: Force<f64>) -> Vec<f64> {
-    let channels = channels(samples).zip(noise_sd);
+/// Stacked samples, so many of each channel, over the standard deviations of the noise.
+pub fn whitened(stack: &[f64], samples: usize, noise_sd: Force<f64>) -> Vec<f64> {
+    let channels = channels(stack, samples).zip(noise_sd);
     stacked(channels.map(|(samples, sd)| scaled(samples, 1.0 / sd)))
 }
 
@@ -250,25 +264,33 @@ pub fn nuisances(
     depth: f64,
     expected: impl Fn(f64) -> Result<Force<Vec<f64>>, Refusal>,
 ) -> Result<Vec<Force<Vec<f64>>>, Refusal> {
+    let f0 = expected(depth)?;
+    let samples = f0.normal.len();
     let expected = |depth| expected(depth).map(stacked);
-    let nuisances = nuisances_of(unknown, depths, depth, &expected(depth)?, expected)?;
-    let apart = |nuisance: &Vec<f64>| channels(nuisance).map(<[f64]>::to_vec);
+    let f0 = (&*stacked(f0), samples);
+    let nuisances = nuisances_of(unknown, depths, depth, f0, expected)?;
+    let apart = |nuisance: &Vec<f64>| channels(nuisance, samples).map(<[f64]>::to_vec);
     Ok(nuisances.iter().map(apart).collect())
 }
 
-/// As [`nuisances`], all stacked, with the forces `f0` without inclusion at `depth`.
+/// As [`nuisances`], all stacked, with the forces `f0` without inclusion at `depth`, so many samples of each channel.
 pub(crate) fn nuisances_of(
     unknown: &[Unknown],
     depths: &[f64],
     depth: f64,
-    f0: &[f64],
+    (f0, samples): (&[f64], usize),
     expected: impl Fn(f64) -> Result<Vec<f64>, Refusal>,
 ) -> Result<Vec<Vec<f64>>, Refusal> {
-    let samples = f0.len() / 2;
     let alone = |series: &dyn Fn(usize) -> f64| {
-        let series: Vec<f64> = (0..samples).map(series).collect();
-        let none = vec![0.0; samples];
-        [Force::new(&series, &none), Force::new(&none, &series)].map(stacked)
+        let in_channel = |channel: usize| {
+            let all = 0..f0.len();
+            let is_in = |at: usize| at / samples == channel;
+            all.map(|at| if is_in(at) { series(at % samples) } else { 0.0 })
+                .collect()
+        };
+        (0..f0.len() / samples)
+            .map(in_channel)
+            .collect::<Vec<Vec<f64>>>()
     };
     let mut nuisances = Vec::new();
     if unknown.contains(&Unknown::Offset) {

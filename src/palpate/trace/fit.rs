@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::design::{Design, Unknown, channels, squares};
+use super::design::{Design, Unknown, squares};
 use super::judge::{Correlation, Noise, Question};
 use super::{Trace, refused};
 use crate::detect::DetectError;
@@ -29,8 +29,8 @@ const STATED_WITHIN: f64 = 2.0;
 /// How well a record fits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
-    /// Standard deviation of the noise that the fit is judged by, N.
-    pub noise_sd: Force<f64>,
+    /// Standard deviation of the noise that the fit is judged by, N; none of a force that the record does not have.
+    pub noise_sd: Force<Option<f64>>,
     /// The residual chi-square: Σ of the squares that neither hypothesis explains, over the variance of the noise.
     pub chi_square: f64,
     /// The range of the residual chi-square of a record that fits, but for the probability [`MISFIT_RATE`]; none if the noise is not stated.
@@ -103,12 +103,14 @@ impl Fit {
         noise_sd: Force<f64>,
     ) -> Result<Fit, DetectError> {
         let (left, explained) = white.unexplained()?;
-        let samples = white.samples() as f64;
-        let degrees = 2.0 * samples - explained as f64;
+        let degrees = left.len() as f64 - explained as f64;
         let chi_square = squares(&left);
         let whiteness = match question.noise.correlation {
             Correlation::None => None,
-            _ => Some(whiteness(channels(&left), LAGS.min(white.samples() / 5))?),
+            _ => Some(whiteness(
+                white.channels(&left),
+                LAGS.min(white.samples / 5),
+            )?),
         };
         let within = if question.is_unknown(Unknown::Variance) {
             STATED_WITHIN * STATED_WITHIN
@@ -116,8 +118,9 @@ impl Fit {
             1.0
         };
         let limits = question.noise.sd.map(|_| limits(degrees, within));
+        let lateral = white.has_lateral().then_some(noise_sd.lateral);
         Ok(Fit {
-            noise_sd,
+            noise_sd: Force::new(lateral, Some(noise_sd.normal)),
             chi_square,
             limits: limits.transpose()?,
             degrees,
@@ -197,13 +200,16 @@ impl Noise {
     }
 }
 
-/// The smaller probability of white noise having such autocorrelations of both channels, 1 without lags.
+/// The smallest probability of white noise having such autocorrelations, of the channels that are there; 1 without lags.
 fn whiteness(noise: Force<&[f64]>, lags: usize) -> Result<f64, DetectError> {
     if lags == 0 {
         return Ok(1.0);
     }
-    let of = noise.map(|channel| ljung_box(channel, lags));
-    Ok(of.lateral?.min(of.normal?))
+    let channels = noise.into_array().into_iter();
+    let mut there = channels.filter(|channel| !channel.is_empty());
+    there.try_fold(1.0, |least: f64, channel| {
+        Ok(least.min(ljung_box(channel, lags)?))
+    })
 }
 
 /// The range of χ² with `degrees` of freedom, but for the probability [`MISFIT_RATE`]; the variance may be off by the factor

@@ -181,7 +181,8 @@ impl Trace {
     /// Implements: MAP-046, MAP-048, TRC-011.
     pub fn from_csv_as(text: &str, file: &str, layout: &Layout) -> Result<Trace, Refusal> {
         let read = || {
-            let read = Rows::parse_last_optional(text, COLUMNS, EXPECTED_HEADER, layout)?;
+            let read =
+                Rows::parse_last_optional::<2>(text, COLUMNS, EXPECTED_HEADER, layout, true)?;
             let (mut table, has_lateral) = read;
             if !has_lateral {
                 let note = "there is no lateral force: the normal force alone counts";
@@ -427,13 +428,28 @@ impl Record {
         Ok((record, (left_out > 0).then_some(note)))
     }
 
-    /// The forces that `map` expects at `depth` (m) at the samples, N.
+    /// This record without its lateral forces, if it has any, for maps that have none.
+    ///
+    /// Implements: TRC-014.
+    pub fn normal_alone(mut self) -> Record {
+        self.forces.lateral.clear();
+        self
+    }
+
+    /// The forces that `map` expects at `depth` (m) at the samples, N; no lateral ones if it has none.
     ///
     /// # Errors
-    /// The first sample outside the map's lateral positions, with its line; a depth outside its depths.
+    /// The first sample outside the map's lateral positions, with its line; a depth outside its depths; a record with lateral forces
+    /// where the map has none.
     ///
-    /// Implements: TRC-008, TRC-024, CLI-140.
+    /// Implements: TRC-008, TRC-014, TRC-024, CLI-140.
     pub fn expected(&self, map: &ForceTable, depth: f64) -> Result<Force<Vec<f64>>, Refusal> {
+        let other = Refusal::state(
+            "the record has lateral forces, and the maps have none",
+            "leave out those of the record",
+        );
+        let is_other = !self.forces.lateral.is_empty() && map.lateral().is_none();
+        other.in_file(&*self.file).when(is_other)?;
         let outside = |&position: &f64| !is_over(map, position);
         let expected = match self.positions.iter().position(outside) {
             Some(sample) => {

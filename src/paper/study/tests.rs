@@ -326,7 +326,7 @@ fn the_medians_are_solved_on_three_meshes() {
         let map = model.sweep(plan.probe_depth, &plan.laterals).unwrap();
         let found = sampler.sample(sample).unwrap();
         // 4/3 and 3/2 of a mesh size round.
-        assert!((found[0] - map.table().forces().normal.row(0)[0]).abs() < 1e-9);
+        assert!((found[0] - map.table().normal().row(0)[0]).abs() < 1e-9);
     }
 }
 

@@ -77,8 +77,10 @@ fn by_maps(arguments: &DetectArguments, record: Noted, noise: Noise) -> Result<(
     let maps = TwoMaps::read(arguments)?;
     let (table, file) = (maps.reference.table(), maps.reference_file);
     let depth = depth(arguments)?.unwrap_or(0.0);
-    let record = told(trimmed(arguments, record, table)?);
     let mut warnings = Warnings::default();
+    let hypotheses = maps.hypotheses(&mut warnings)?;
+    let record = trimmed(arguments, record, table, hypotheses.have_lateral())?;
+    let record = told(record);
     let known = arguments.noise.known()?;
     let question = question(
         arguments,
@@ -87,7 +89,7 @@ fn by_maps(arguments: &DetectArguments, record: Noted, noise: Noise) -> Result<(
         (table, file),
         &mut warnings,
     )?;
-    let found = question.judge(maps.hypotheses(&mut warnings)?, &record)?;
+    let found = question.judge(hypotheses, &record)?;
     let mut rows = exactly_asked(arguments, &known, depth, record);
     rows.append(found.rows());
     let words = conclusion(&known, found.decision, &found.causes, &found.fit);
@@ -108,7 +110,7 @@ fn by_bank(
     let bank = Bank::read(path)?;
     let (files, table) = (&arguments.hypotheses, bank.reference().table());
     let depth = depth(arguments)?.unwrap_or(bank.depth());
-    let record = told(trimmed(arguments, record, table)?);
+    let record = told(trimmed(arguments, record, table, true)?);
     let prior = files.prior.as_ref();
     let prior = prior.map(|file| bank.read_prior(file)).transpose()?;
     let mut warnings = Warnings::default();
@@ -137,12 +139,21 @@ fn by_bank(
     tell(arguments, verdict, &words, rows)
 }
 
-/// The record without the samples outside `map`, if --trim is given.
+/// The record without the samples outside `map`, if --trim is given, and without lateral forces where the maps do not `have_lateral`
+/// ones.
+///
+/// Implements: TRC-014.
 fn trimmed(
     arguments: &DetectArguments,
-    (record, mut notes): Noted,
+    (mut record, mut notes): Noted,
     map: &ForceTable,
+    have_lateral: bool,
 ) -> Result<Noted, CliError> {
+    if !have_lateral && !record.forces().lateral.is_empty() {
+        record = record.normal_alone();
+        let note = "the maps have no lateral forces: those of the record are left out";
+        notes.push(note.into());
+    }
     if !arguments.sweep.trim {
         return Ok((record, notes));
     }

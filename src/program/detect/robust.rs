@@ -241,7 +241,16 @@ impl<'a> Asked<'a> {
     /// Reads a record, without what is outside the maps if --trim is given.
     pub(super) fn read(&self, path: &Path) -> Result<Noted, CliError> {
         let record = super::read(self.arguments, self.layout, path)?;
-        trimmed(self.arguments, record, self.reference().table())
+        let have_lateral = match self.between {
+            Between::Maps(hypotheses, _) => hypotheses.have_lateral(),
+            Between::Bank(..) => true,
+        };
+        trimmed(
+            self.arguments,
+            record,
+            self.reference().table(),
+            have_lateral,
+        )
     }
 
     /// The sweeps of a place, and behind them the reference sweeps, at the first depth.

@@ -277,8 +277,8 @@ pub fn symmetry(what: &str, map: &ForceMap) -> Vec<Figure> {
     let (mut pairs, mut unlike, mut aside) = (0, 0, 0);
     for row in 0..rows {
         let (normal, lateral) = (
-            map.table().forces().normal.row(row),
-            map.table().forces().lateral.row(row),
+            map.table().normal().row(row),
+            map.table().lateral().unwrap().row(row),
         );
         for (left, right) in (0..columns).zip((0..columns).rev()).take(columns / 2) {
             let same = normal[left].to_bits() == normal[right].to_bits()

@@ -45,12 +45,12 @@ pub fn certificates() -> Measured {
         let certificate = map.certificate().ok_or("the map has no certificate")?;
         let bands = certificate.discretization.as_ref();
         let bands = bands.ok_or("the map has no bands")?;
-        let forces = map.table().forces().normal.values();
+        let forces = map.table().normal().values();
         let relative = bands.normal_force_band.values().iter().zip(forces);
         let lateral = bands.lateral_force_band.values();
         let relative = 100.0 * largest(relative.map(|(band, force)| band / force));
         figures.extend(figures! {
-            "{name}: normal force at 4 mm, x = 0, N" => told(map.table().forces().normal.row(2)[2]);
+            "{name}: normal force at 4 mm, x = 0, N" => told(map.table().normal().row(2)[2]);
             "{name}: largest half band of a normal force, %" => told(relative);
             "{name}: largest half band of a lateral force, N" => told(largest(lateral.iter().copied()));
             "{name}: largest relative residual" => at_most(certificate.worst_relative_residual, RESIDUAL);

@@ -26,6 +26,31 @@ fn record(map: &ForceMap, seed: Option<u64>, offset: f64, gain: f64) -> Record {
     trace.record(None).unwrap()
 }
 
+// Verifies: TRC-015. The limit of a noise that grows is another way to the same numbers.
+#[test]
+fn a_record_of_the_normal_force_alone_is_located_by_it() {
+    let bank = all();
+    let record = record(&bank.maps()[4], Some(7), 0.1, 1.1);
+    let located = |record: &Record, lateral_sd: f64| {
+        let mut search = by_map(&bank);
+        search.question.noise.sd = Some(Force::new(lateral_sd, SD));
+        search.locate(record).unwrap()
+    };
+    // Each lateral sample adds at most (1 N/1e8 N)² to a sum of squares.
+    let (one, both) = (
+        located(&record.clone().normal_alone(), SD),
+        located(&record, 1e8),
+    );
+    assert_near(one.theta_mixture / both.theta_mixture, 1.0, 1e-9);
+    assert_near(one.test.gamma / both.test.gamma, 1.0, 1e-9);
+    assert_eq!((one.point, one.fit.noise_sd.lateral), (both.point, None));
+    let offsets_and_drifts = 2.0;
+    assert_eq!(
+        one.fit.degrees,
+        both.fit.degrees - 61.0 + offsets_and_drifts
+    );
+}
+
 const USUAL: &[Unknown] = &[Unknown::Offset, Unknown::Drift, Unknown::Gain];
 
 fn question<'a>(unknown: &'a [Unknown], criterion: Criterion) -> Question<'a> {
@@ -203,7 +228,7 @@ fn reach_is_where_gamma_is_enough() {
         let of = map(Some((0.0, depth, diameter)), &[4e-3]);
         let one_depth = map(None, &[4e-3]);
         let signal = of.table().minus(one_depth.table()).unwrap();
-        let squares = signal.forces().normal.values().iter().map(|f| f * f);
+        let squares = signal.normal().values().iter().map(|f| f * f);
         squares.sum::<f64>().sqrt() / sd
     };
     let found = reach(0.1, &[]).reached().unwrap();

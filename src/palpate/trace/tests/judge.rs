@@ -55,7 +55,7 @@ fn a_record_at_a_known_position_by_hand() {
     assert_eq!(found.decision, Some(Decision::Inclusion));
 }
 
-// Verifies: TRC-011, TRC-020, TRC-024, TRC-060, CLI-049.
+// Verifies: TRC-020, TRC-024, TRC-060, CLI-049.
 #[test]
 fn maps_that_do_not_fit_are_refused() {
     let judged = |record: &Record, reference: &ForceTable, depth: f64| {
@@ -66,20 +66,20 @@ fn maps_that_do_not_fit_are_refused() {
     };
     let record = read(EXAMPLE).unwrap();
     let far = read(&format!("{EXAMPLE}# far\n3.1,0,0\n")).unwrap();
-    let one_channel = read("position_mm,normal_force_n\n-0.5,2.125\n").unwrap();
     let found = [
         judged(&record, &table(1.0), 0.001),
         judged(&record, &table(0.0), 0.0035),
         judged(&far, &table(0.0), 0.001),
-        judged(&one_channel, &table(0.0), 0.001),
     ];
     let expected = "t.csv: the maps do not differ at the samples, and leave no signal to decide by
 t.csv: depth 0.0035 m is outside the map, which has 0.001 to 0.003 m
-t.csv:5: position 3.1 mm is outside the maps, which have -3.0 to 3.0 mm; leave it out, or use --trim
-t.csv: the exact model needs lateral forces, which the record lacks; use the robust model";
+t.csv:5: position 3.1 mm is outside the maps, which have -3.0 to 3.0 mm; leave it out, or use --trim";
     assert_eq!(found.join("\n"), expected);
     let table = |depths: [f64; 2]| {
-        let (laterals, forces) = (table(0.0).laterals().to_vec(), table(0.0).forces().clone());
+        let (laterals, forces) = (
+            table(0.0).laterals().to_vec(),
+            table(0.0).both().unwrap().map(Matrix::clone),
+        );
         ForceTable::new(depths.to_vec(), laterals, forces).unwrap()
     };
     let (a, b) = (table([0.001, 0.003]), table([0.001, 0.0031]));
@@ -245,13 +245,72 @@ fn what_is_unknown_twice_counts_once() {
         assert_eq!([once.fit.degrees, twice.fit.degrees], [31.0; 2]);
         for [once, twice] in [
             [once.fit.chi_square, twice.fit.chi_square],
-            [once.fit.noise_sd.normal, twice.fit.noise_sd.normal],
+            [&once, &twice].map(|judged| judged.fit.noise_sd.normal.unwrap()),
             [once.test.t, twice.test.t],
             [once.test.gamma, twice.test.gamma],
             [once.posterior, twice.posterior],
         ] {
             close(twice, once);
         }
+    }
+}
+
+/// The normal forces of a table.
+fn normal_alone(table: &ForceTable) -> ForceTable {
+    let (depths, laterals) = (table.depths().to_vec(), table.laterals().to_vec());
+    ForceTable::of_channels(depths, laterals, table.normal().clone(), None).unwrap()
+}
+
+// Verifies: TRC-011, TRC-014, TRC-015, TRC-068, TRC-070.
+#[test]
+fn a_lateral_force_that_is_not_there_counts_nowhere() {
+    let (without, with) = (gel(0.0), gel(0.2));
+    let signal = with.minus(&without).unwrap();
+    let both = recorded(|x| {
+        let signal = signal.sweep(4e-3, &[x]).unwrap();
+        signal.map(|signal| 0.8 * signal[0]).into_array()
+    });
+    let one = both.clone().normal_alone();
+    let maps_of_one = [&without, &with].map(normal_alone);
+    let judged = |record: &Record, [without, with]: [&ForceTable; 2], noise| {
+        let question = Question {
+            unknown: &[Unknown::Offset, Unknown::Drift, Unknown::Gain],
+            noise,
+            ..question(4e-3)
+        };
+        question.judge(Hypotheses::of_tables(without, with).unwrap(), record)
+    };
+    // χ², degrees, T, γ, γ if all were known, and the noise, of the normal force alone.
+    for (sd, expected) in [
+        (
+            Some(STATED),
+            "241.7926599020309 157 5.628875376068693 6.886509620972397 10.998195443250404 0.08",
+        ),
+        (
+            None,
+            "157 157 4.535758292249939 5.549162315936748 8.862366431773692 0.09927998827779684",
+        ),
+    ] {
+        let noise = noise(sd, Correlation::OfRecord);
+        let found = judged(&one, [&without, &with], noise).unwrap();
+        let (test, fit) = (found.test, &found.fit);
+        assert_eq!(fit.noise_sd.lateral, None);
+        let numbers = [fit.chi_square, fit.degrees, test.t, test.gamma];
+        let more = [found.gamma_nominal, fit.noise_sd.normal.unwrap()];
+        let found_all = numbers.into_iter().chain(more);
+        for (found, expected) in found_all.zip(expected.split(' ')) {
+            close(found, expected.parse().unwrap());
+        }
+        assert!(found.rows().get("noise_sd_lateral_n").unwrap().is_null());
+        // With maps of which either or both have no lateral force it is the same answer.
+        let [f0, f1] = &maps_of_one;
+        for maps in [[f0, f1], [&without, f1], [f0, &with]] {
+            assert_eq!(judged(&one, maps, noise).unwrap(), found);
+        }
+        assert_error(
+            judged(&both, [f0, f1], noise),
+            "t.csv: the record has lateral forces, and the maps have none; leave out those of the record",
+        );
     }
 }
 

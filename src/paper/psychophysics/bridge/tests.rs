@@ -89,7 +89,7 @@ fn half_a_sweep_is_completed_by_symmetry() {
     let whole = sweep(&half, None).unwrap();
     assert_eq!(whole.table().laterals().len(), 5);
     assert_eq!(
-        whole.table().forces().lateral.row(0),
+        whole.table().lateral().unwrap().row(0),
         [-1.0, -3.0, 0.0, 3.0, 1.0]
     );
     // A whole one stays, and so does one that begins elsewhere.

@@ -8,13 +8,13 @@ use crate::report::{Findings, MapFindings, Run, Topic, paper};
 use crate::study::Kind;
 use palpate::chart::style::{PALETTE, ramp};
 use palpate::chart::{Line, Panel, round_range};
-use palpate::force_map::{ForceMap, ForceTable, Matrix, Source};
+use palpate::force_map::{ForceMap, Matrix, Source};
 use palpate::refusal::Refusal;
 
 /// The signals, if there are any, and the forces of every map: computed ones, then the measured ones.
 ///
 /// # Errors
-/// A map does not fit the reference.
+/// A map does not fit the reference, or has no lateral forces.
 ///
 /// Implements: REP-031.
 pub fn figures(run: &Run, found: &Findings) -> Result<Vec<Plan>, Refusal> {
@@ -34,11 +34,11 @@ pub fn figures(run: &Run, found: &Findings) -> Result<Vec<Plan>, Refusal> {
     for map in run.reference_and_maps() {
         let bands = bands(run, map);
         let words = force_words(map, depth.filter(|_| !bands[0].is_empty()));
-        let panels = forces(map.table(), bands);
+        let panels = forces(map, bands)?;
         plans.push(plan("figure-5", Some(map), words, panels));
     }
     for map in &run.measured {
-        let panels = forces(map.table(), Default::default());
+        let panels = forces(map, Default::default())?;
         plans.push(plan("figure-7", Some(map), measured_words(map), panels));
     }
     Ok(plans)
@@ -70,7 +70,8 @@ fn points(laterals: &[f64], forces: &[f64]) -> Vec<(f64, f64)> {
 
 /// Figure 5: both forces of a map, one curve for each depth of the probe, and the ends of a band of the normal and of the lateral
 /// force.
-fn forces(table: &ForceTable, [normal, lateral]: [Vec<Line>; 2]) -> [Panel; 2] {
+fn forces(map: &ForceMap, [normal, lateral]: [Vec<Line>; 2]) -> Result<[Panel; 2], Refusal> {
+    let table = map.table();
     let (depths, laterals) = (table.depths(), table.laterals());
     let curves = |matrix: &Matrix, band: Vec<Line>| {
         let rows = depths.iter().zip(matrix.rows()).enumerate();
@@ -80,12 +81,14 @@ fn forces(table: &ForceTable, [normal, lateral]: [Vec<Line>; 2]) -> [Panel; 2] {
         });
         curves.chain(band).collect()
     };
-    let forces = table.forces();
+    let undrawn = format!("map {:?} cannot be drawn", name_of_map(map));
+    let forces = table.both().map_err(Refusal::because(undrawn))?;
     let curves = [
-        curves(&forces.normal, normal),
-        curves(&forces.lateral, lateral),
+        curves(forces.normal, normal),
+        curves(forces.lateral, lateral),
     ];
-    panels(laterals, ["Normal force (N)", "Lateral force (N)"], curves)
+    let headings = ["Normal force (N)", "Lateral force (N)"];
+    Ok(panels(laterals, headings, curves))
 }
 
 /// The ends of the bands of the normal and of the lateral force that a study has for the phantom of a map.
@@ -179,7 +182,7 @@ fn force_words(map: &ForceMap, depth: Option<f64>) -> Words {
         format!(" Between the dashed lines lie 95 % of the draws of the uncertain inputs, at {depth} mm.")
     });
     let bands = bands.unwrap_or_default();
-    let forces = map.table().forces().normal.values().iter();
+    let forces = map.table().normal().values().iter();
     let largest = forces.copied().fold(0.0, f64::max);
     [
         format!(
