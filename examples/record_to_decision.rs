@@ -33,6 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let question = Question {
         depth: 4e-3,
         depth_tolerance: 0.0,
+        is_zeroed: false,
         unknown: &[Unknown::Offset, Unknown::Variance],
         noise: Noise {
             sd: None,

@@ -105,6 +105,7 @@ fn a_noiseless_inclusion_is_found_between_the_points() {
             let question = Question {
                 depth: DEPTH,
                 depth_tolerance: 0.0,
+                is_zeroed: false,
                 unknown: &[],
                 noise: Noise {
                     sd: Some(Force::new(0.1, 0.1)),

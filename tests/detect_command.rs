@@ -1,6 +1,7 @@
 //! `palpate detect`, end to end: two solved maps or a small bank, a simulated sweep, the program, and its answer
 //! against the library's and against plain sums.
 
+mod air;
 mod bank;
 mod many;
 mod one_channel;

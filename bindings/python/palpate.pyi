@@ -200,6 +200,7 @@ class Bank:
         max_false_alarm: float | None = None,
         prior: ArrayLike | None = None,
         prior_h1: float = 0.5,
+        zeroed: bool = False,
     ) -> dict[str, Any]: ...
 
 def calibrate(

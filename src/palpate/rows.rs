@@ -131,6 +131,19 @@ impl Rows {
         }
     }
 
+    /// The samples in air at the start and at the end of each sweep.
+    fn in_air(&mut self, sweeps: &[[usize; 2]]) {
+        let value = json!(sweeps);
+        let ends = |[start, end]: &[usize; 2]| format!("first {start}, last {end}");
+        match sweeps.iter().all(|of| *of == [0; 2]) {
+            true => self.value("samples_in_air", value),
+            false => {
+                let text = sweeps.iter().map(ends).collect::<Vec<_>>().join("; ");
+                self.shown("samples_in_air", "samples in air", value, text);
+            }
+        }
+    }
+
     /// How well the record fits.
     fn fit(&mut self, fit: &Fit) {
         self.value("fits", fit.noise_is_right());
@@ -149,6 +162,8 @@ impl Rows {
         self.value("chi_square_limits", fit.limits.map(Vec::from));
         self.value("degrees", fit.degrees);
         self.value("whiteness", fit.whiteness);
+        self.value("level", fit.level);
+        self.in_air(&[fit.in_air]);
     }
 }
 
@@ -215,6 +230,7 @@ impl RobustAnswer {
             &channels(|sd| sd.normal),
         );
         rows.value("glitches", json!(self.glitches));
+        rows.in_air(&self.in_air);
         rows
     }
 }

@@ -307,11 +307,11 @@ impl Bank {
     ///
     /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N, or (n,), normal alone. noise_sd_n: of a sample in
     /// N, one for both channels or (lateral, normal), or None if the record tells. unknown: what is fitted, of offset, drift, gain, depth and variance.
-    /// white: do not test the record for correlated noise. The decision is for the fewest errors, or keeps
+    /// white: do not test the record for correlated noise. zeroed: whether the sensor was set to zero on the gel. The decision is for the fewest errors, or keeps
     /// max_miss or max_false_alarm. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion.
     #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, unknown=vec!["offset".into(), "drift".into(), "gain".into(),
-        "variance".into()], white=false, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5),
-        text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, unknown=('offset', 'drift', 'gain', 'variance'), white=False, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5)")]
+        "variance".into()], white=false, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=false),
+        text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, unknown=('offset', 'drift', 'gain', 'variance'), white=False, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=False)")]
     #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
     fn locate<'py>(
         &self,
@@ -326,6 +326,7 @@ impl Bank {
         max_false_alarm: Option<f64>,
         prior: Option<Any<'_, 'py>>,
         prior_h1: f64,
+        zeroed: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
         let record = record(positions_mm, forces_n)?;
         let sd = noise_sd_n.map(|sd| pair("noise_sd_n", sd)).transpose()?;
@@ -338,6 +339,7 @@ impl Bank {
             question: Question {
                 depth: self.bank.depth(),
                 depth_tolerance: si("depth_tolerance_mm", depth_tolerance_mm, -3)?,
+                is_zeroed: zeroed,
                 unknown: &chosen("unknown", unknown, Unknown::ALL)?,
                 noise: Noise { sd, correlation },
                 criterion: criterion(max_miss, max_false_alarm)?,

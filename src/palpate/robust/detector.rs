@@ -121,6 +121,7 @@ impl<'a> RobustDetector<'a> {
             levels: Vec::new(),
             noise_sd: Vec::new(),
             glitches: Vec::new(),
+            in_air: Vec::new(),
             explanation: None,
         };
         let cleaned = self.cleaned(records, &mut answer);
@@ -156,10 +157,16 @@ impl<'a> RobustDetector<'a> {
 
     /// The records without glitches, of which `answer` gets level, noise and glitches, or the causes why they cannot be judged.
     ///
-    /// Implements: ROB-001, ROB-002, ROB-011.
+    /// Implements: ROB-001, ROB-002, ROB-007, ROB-011.
     fn cleaned(&self, records: &[Force<&[f64]>], answer: &mut RobustAnswer) -> Vec<Cleaned> {
         let mut all = Vec::new();
         for (sweep, forces) in self.sweeps.iter().zip(records) {
+            let in_air = sweep.in_air(&self.question, forces.normal);
+            answer.in_air.push(in_air);
+            if in_air != [0; 2] {
+                answer.causes.push(Cause::InAir);
+                continue;
+            }
             match sweep.cleaned(&self.question, *forces) {
                 Ok(cleaned) => {
                     let Force { lateral, normal } = cleaned

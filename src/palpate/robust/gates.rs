@@ -2,17 +2,18 @@
 
 use super::modes::Modes;
 use crate::trace::Cause;
+use crate::trace::contact::LEAST_LEVEL;
 
 /// A sample is a glitch if it is so many standard deviations from what the others say of it.
 const GLITCH: f64 = 6.0;
 /// So many glitches are replaced, or this share of the samples; more refuse the record.
-const MOST_GLITCHES: usize = 2;
+pub const MOST_GLITCHES: usize = 2;
 const MOST_GLITCHES_SHARE: f64 = 0.05;
 /// A record whose noise is to be estimated has at least so many samples, and one in stated noise so many.
 pub const LEAST_SAMPLES: usize = 20;
 pub const LEAST_SAMPLES_IN_NOISE: usize = 8;
 /// The level of a record of the gel: of computed gels 0.57 to 1.34, at finite strain up to 1.83.
-const LEVEL: [f64; 2] = [0.5, 2.2];
+const LEVEL: [f64; 2] = [LEAST_LEVEL, 2.2];
 /// From here on another unit is likelier than anything else, and below its inverse too.
 const UNIT: f64 = 30.0;
 /// Below this the sign is another.

@@ -128,6 +128,8 @@ pub struct RobustAnswer {
     pub noise_sd: Vec<Force<Option<f64>>>,
     /// Samples of each sweep that were replaced.
     pub glitches: Vec<usize>,
+    /// Samples of each sweep in air at its start and at its end.
+    pub in_air: Vec<[usize; 2]>,
     /// What either hypothesis expects of the records, where they were compared.
     pub explanation: Option<Explanation>,
 }

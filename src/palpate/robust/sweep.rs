@@ -11,6 +11,7 @@ use crate::force::Force;
 use crate::force_map::ForceTable;
 use crate::refusal::Refusal;
 use crate::trace::Cause;
+use crate::trace::contact::{in_air, level};
 use crate::trace::design::depth_slope;
 
 /// The radius of the probe where no phantom says it, m: the paper's.
@@ -97,6 +98,27 @@ pub fn prepared(
 }
 
 impl PreparedSweep {
+    /// Samples of a record in air at the start and at the end, but for so few as may be glitches.
+    ///
+    /// Implements: ROB-007.
+    pub fn in_air(&self, question: &RobustQuestion<'_>, normal: &[f64]) -> [usize; 2] {
+        if question.is_zeroed {
+            return [0; 2];
+        }
+        let steps = normal.windows(2).map(|pair| pair[1] - pair[0]);
+        let of_steps = || steps.map(|step| 0.5 * step * step).sum::<f64>() / normal.len() as f64;
+        let stated = question.noise_sd.map(|sd| sd.normal * sd.normal);
+        let expected = channels(&self.undisturbed.forces).normal;
+        let ends = in_air(normal, expected, stated.unwrap_or_else(of_steps));
+        ends.map(|count| {
+            if count > gates::MOST_GLITCHES {
+                count
+            } else {
+                0
+            }
+        })
+    }
+
     /// A record of the sweep without its glitches, its level and its noise; or why it cannot be judged.
     ///
     /// Implements: ROB-001, ROB-002, ROB-004, ROB-011.
@@ -183,11 +205,4 @@ impl PreparedSweep {
     pub fn weight(&self) -> f64 {
         channels(&self.undisturbed.forces).normal.iter().sum()
     }
-}
-
-/// Σ F f/Σ f².
-fn level(forces: &[f64], expected: &[f64]) -> f64 {
-    let cross: f64 = forces.iter().zip(expected).map(|(a, b)| a * b).sum();
-    let square: f64 = expected.iter().map(|b| b * b).sum();
-    cross / square.max(f64::MIN_POSITIVE)
 }

@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::contact::{LEAST_LEVEL, in_air, level};
 use super::design::{Design, Unknown, squares};
 use super::judge::{Correlation, Noise, Question};
 use super::{Trace, refused};
@@ -39,6 +40,10 @@ pub struct Fit {
     pub degrees: f64,
     /// The probability of such autocorrelations in white noise, of the worse channel; none if the noise is stated to be white.
     pub whiteness: Option<f64>,
+    /// Σ F f/Σ f² of the normal forces; none if the sensor was set to zero on the gel.
+    pub level: Option<f64>,
+    /// Samples in air at the start and at the end.
+    pub in_air: [usize; 2],
 }
 
 /// Why a record cannot be judged.
@@ -61,6 +66,8 @@ pub enum Cause {
     Glitches,
     /// The forces are too small for this gel at this depth.
     NoContact,
+    /// The probe does not touch at the start or at the end.
+    InAir,
     /// The sweep is too short to show an inclusion.
     Narrow,
     /// The map with the inclusion has the smaller forces.
@@ -80,6 +87,7 @@ impl fmt::Display for Cause {
             Cause::Saturated => "the sensor was at the end of its range: many samples have its largest or least force",
             Cause::Glitches => "too many samples are far from those beside them",
             Cause::NoContact => "the forces are too small for the maps' gel at this depth: the probe does not touch, or the sensor was set to zero on the gel",
+            Cause::InAir => "samples at the start or at the end are in air: leave them out",
             Cause::Narrow => "the sweep is shorter than half the radius of the probe: the positions may be in another unit, such as m",
             Cause::Exchanged => "the map with the inclusion has smaller forces than the reference: the maps may be exchanged",
             Cause::TooWeak => "the record is too weak to tell an inclusion from what else may bend it",
@@ -96,7 +104,7 @@ pub fn reasons(causes: &[Cause]) -> String {
 impl Fit {
     /// How well `white`, the parts of `record` over the standard deviations `noise_sd`, fits.
     ///
-    /// Implements: TRC-070.
+    /// Implements: TRC-070, TRC-016, TRC-017.
     pub fn new(
         question: &Question<'_>,
         white: &Design,
@@ -118,6 +126,17 @@ impl Fit {
             1.0
         };
         let limits = question.noise.sd.map(|_| limits(degrees, within));
+        let normal = |part| {
+            white
+                .channels(part)
+                .normal
+                .iter()
+                .map(|of| noise_sd.normal * of)
+        };
+        let expected: Vec<f64> = normal(&white.reference).collect();
+        let forces = normal(&white.residual).zip(&expected).map(|(r, f)| r + f);
+        let forces: Vec<f64> = forces.collect();
+        let touches = !question.is_zeroed;
         let lateral = white.has_lateral().then_some(noise_sd.lateral);
         Ok(Fit {
             noise_sd: Force::new(lateral, Some(noise_sd.normal)),
@@ -125,6 +144,11 @@ impl Fit {
             limits: limits.transpose()?,
             degrees,
             whiteness,
+            level: touches.then(|| level(&forces, &expected)),
+            in_air: match touches {
+                true => in_air(&forces, &expected, noise_sd.normal * noise_sd.normal),
+                false => [0; 2],
+            },
         })
     }
 
@@ -136,10 +160,13 @@ impl Fit {
 
     /// Why the record cannot be judged; none if it can.
     ///
-    /// Implements: TRC-070, TRC-075.
+    /// Implements: TRC-070, TRC-075, TRC-016, TRC-017.
     pub fn causes(&self) -> Vec<Cause> {
         let is_coloured = self.whiteness.is_some_and(|p| p < MISFIT_RATE);
+        let is_low = |level: f64| level.abs() < LEAST_LEVEL;
         let checks = [
+            (self.level.is_some_and(is_low), Cause::NoContact),
+            (self.in_air != [0; 2], Cause::InAir),
             (!self.noise_is_right(), Cause::Misfit),
             (is_coloured, Cause::Coloured),
         ];

@@ -33,6 +33,8 @@ pub struct Question<'a> {
     pub depth: f64,
     /// The true depth is within so much of it, m, unless it is unknown; 0 if it is exact.
     pub depth_tolerance: f64,
+    /// Whether the sensor was set to zero on the gel, so that its forces say nothing of contact.
+    pub is_zeroed: bool,
     /// What is not known of the sweep.
     pub unknown: &'a [Unknown],
     /// The noise on its forces.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `mod.rs` | the trace, its positions, and the forces that a map expects there |
 //! | `design.rs` | what the record may hold: signal, nuisances |
+//! | `contact.rs` | whether the probe touches |
 //! | `fit.rs` | whether it fits, and the likeliest cause if not |
 //! | `judge.rs` | what is known, what is asked, and the answer at a known position |
 //!
@@ -34,6 +35,7 @@
 //! let question = Question {
 //!     depth: 0.004,
 //!     depth_tolerance: 0.0,
+//!     is_zeroed: false,
 //!     unknown: &[Unknown::Offset],
 //!     noise: Noise { sd: Some(Force::new(0.02, 0.02)), correlation: Correlation::None },
 //!     criterion: Criterion::MaximumAPosteriori,
@@ -46,6 +48,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub(crate) mod contact;
 pub(crate) mod design;
 mod fit;
 mod judge;

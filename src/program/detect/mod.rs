@@ -183,6 +183,7 @@ fn question<'a>(
     Ok(Question {
         depth,
         depth_tolerance,
+        is_zeroed: arguments.model.zeroed,
         unknown,
         noise,
         criterion: arguments.criterion.criterion()?,
@@ -253,6 +254,7 @@ fn exactly_asked(arguments: &DetectArguments, known: &Known, depth: f64, record:
     rows.value("model", "exact");
     rows.value("depth_tolerance_m", depth_tolerance(arguments));
     rows.value("unknown", json!(known.unknown));
+    rows.value("zeroed", arguments.model.zeroed);
     let criterion = &arguments.criterion;
     rows.value("criterion", criterion.name());
     for (key, rate) in [

@@ -47,7 +47,6 @@ pub fn check_options(arguments: &DetectArguments) -> Result<(), CliError> {
     ];
     let of_robust = [
         ("--sure", model.sure.is_some()),
-        ("--zeroed", model.zeroed),
         ("--together", model.together),
         ("--reference-sweep", !model.reference_sweeps.is_empty()),
         ("--gel-uncertainty", model.gel_uncertainty.is_some()),

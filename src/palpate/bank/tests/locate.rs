@@ -57,6 +57,7 @@ fn question<'a>(unknown: &'a [Unknown], criterion: Criterion) -> Question<'a> {
     Question {
         depth: 4e-3,
         depth_tolerance: 0.0,
+        is_zeroed: false,
         unknown,
         noise: Noise {
             sd: Some(Force::new(SD, SD)),

@@ -19,6 +19,7 @@ pub fn question<'a>(depth: f64) -> Question<'a> {
     Question {
         depth,
         depth_tolerance: 0.0,
+        is_zeroed: false,
         unknown: &[],
         noise: noise(Some(Force::new(0.5, 0.25)), Correlation::None),
         criterion: Criterion::MaximumAPosteriori,
