@@ -360,35 +360,46 @@ impl<'a> Calibration<'a> {
         let force = Elastic::Empirical.force(end, parts.elastic);
         let sensor = self.known.parameters();
         let (mut phantom, mut begin) = (phantom.clone(), start[..sensor].to_vec());
-        let mut found;
+        let mut before: Option<Calibration<'a>> = None;
         let mut round = 0;
         loop {
             // There is room for a contact that the gel's own law finds earlier.
-            let gel = Gel::new(&phantom, asked, 1.05 * deepest + 5e-5)?;
-            let elastic = Elastic::Gel(Box::new(gel));
+            let gel = Gel::new(&phantom, asked, 1.05 * deepest + 5e-5);
+            if let (Err(FemError::NoConvergence { .. }), Some(before)) = (&gel, before) {
+                // The steps led to moduli that no gel has.
+                return Ok(before.of_cause(CurveCause::Misfit));
+            }
+            let elastic = Elastic::Gel(Box::new(gel?));
             let moduli = vec![0.0; elastic.parameters()];
             // At first as stiff as the empirical law at the end of the curve.
             let ratio = force / elastic.force(end, &moduli);
             let ratio = if round == 0 { libm::log(ratio) } else { 0.0 };
             begin.truncate(sensor);
             begin.extend(moduli.iter().map(|_| ratio));
-            found = best(self.curve, self.known, elastic, &begin);
-            let Some(fit) = &found.fit else { break };
+            let found = best(self.curve, self.known, elastic, &begin);
+            let Some(fit) = &found.fit else {
+                return Ok(found);
+            };
             begin.clone_from(&fit.parameters);
             let changes = found.model().parts(&begin).elastic;
             // One factor of all moduli needs no second table.
             if asked.layers.is_empty() || changes.iter().all(|of| of.abs() < SAME_MODULUS) {
-                break;
+                return Ok(found);
             }
             round += 1;
             if round == MOST_ROUNDS {
-                found.cause = Some(CurveCause::Misfit);
-                break;
+                return Ok(found.of_cause(CurveCause::Misfit));
             }
             let factors: Vec<f64> = changes.iter().map(|change| libm::exp(*change)).collect();
             phantom = stiffened(&phantom, asked.layers, &factors)?;
+            before = Some(found);
         }
-        Ok(found)
+    }
+
+    /// The same, which cannot be judged for a cause.
+    fn of_cause(mut self, cause: CurveCause) -> Calibration<'a> {
+        self.cause = Some(cause);
+        self
     }
 
     fn model(&self) -> CurveModel<'_> {

@@ -304,6 +304,20 @@ fn a_curve_that_says_nothing_is_not_judged() {
     }
 }
 
+// Verifies: CAL-012, CAL-040. The skin alone cannot make a gel half as stiff: its modulus goes down with each step, until no gel has it.
+#[test]
+fn moduli_whose_steps_do_not_end_are_not_those_of_the_gel() {
+    let phantom = Phantom::builtin("none").unwrap();
+    let curve = Rig::new(&phantom, 1e-3).curve(0.5, 0.01, 3);
+    let question = CalibrationQuestion {
+        gel: Some((&phantom, asked(&[0], 2e-3))),
+        contact: None,
+    };
+    let found = calibrate(&curve, question).unwrap();
+    assert_eq!(found.cause, Some(CurveCause::Misfit));
+    assert!(found.expected().is_some() && found.moduli(&[0]).unwrap().is_empty());
+}
+
 // Verifies: CAL-001, CAL-002.
 #[test]
 fn curves_that_are_none_are_refused() {
