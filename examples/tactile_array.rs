@@ -47,7 +47,10 @@ fn elements(model: &Model, solution: &PoseSolution) -> Result<[f64; FINEST], Box
         .map(|&node| mesh.nodes[node][0] + displacements[node][0] - solution.pose.lateral)
         .collect::<Vec<f64>>();
     let mut forces = [0.0; FINEST];
-    for &point in &solution.state.active {
+    let contact = solution
+        .contact()
+        .ok_or("an array on a gel at finite strain")?;
+    for &point in &contact.active {
         let [left, right] = [0, 1].map(|end: usize| corners[point / 2 + end]);
         // The part of the edge left of border k.
         let part = |k: usize| match k {
@@ -59,7 +62,7 @@ fn elements(model: &Model, solution: &PoseSolution) -> Result<[f64; FINEST], Box
             }
         };
         for (k, force) in forces.iter_mut().enumerate() {
-            *force += solution.state.pressures[point] * (part(k + 1) - part(k));
+            *force += contact.pressures[point] * (part(k + 1) - part(k));
         }
     }
     Ok(forces)

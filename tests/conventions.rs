@@ -34,9 +34,9 @@ const UNITS: [&str; 6] = ["mm", "mm-s", "kpa", "us", "n", "s"];
 /// Options whose value is no quantity, has no unit, or is in SI.
 const NO_OTHER_UNIT: &str = "\
     allowed-misses allowed-run bank columns condition confidence-percent config contact criterion cycles \
-    device figure format from gel-uncertainty inclusion journal junit known layer map max-false-alarm max-force max-miss model \
+    device figure format friction from gel-uncertainty inclusion journal junit known layer map max-false-alarm max-force max-miss model \
     noise note observer only out percentile phantom pid prior prior-h1 record reference reference-sweep replay \
-    samples seconds seed serial shard simulations skip-rows soak study subject sure trials uncertainty-out vectors vid vtu";
+    samples seconds seed serial shard simulations skip-rows soak strain study subject sure trials uncertainty-out vectors vid vtu";
 
 // Verifies: CON-002.
 #[test]
@@ -108,7 +108,9 @@ fn the_axes_are_those_of_the_specification() {
     let (depth, lateral) = (2e-3, 4e-3);
     let solution = solve(&model, depth, lateral);
     let moved = &model.surface().positions;
-    let deformed = moved.iter().zip(&solution.state.displacements);
+    let deformed = moved
+        .iter()
+        .zip(&solution.contact().expect("small strain").displacements);
     let deformed = deformed.map(|(at, u)| [at[0] + u[0], at[1] + u[1]]);
     let lowest = deformed.min_by(|a, b| a[1].total_cmp(&b[1])).unwrap();
     assert!((lowest[0] - lateral).abs() < SIZE, "{lowest:?}");

@@ -31,6 +31,7 @@ fn certificate() -> Certificate {
         elements: 3000,
         element: "t6".into(),
         contact: "deformed-normal".into(),
+        law: None,
         arithmetic: "other".into(),
         smallest_det: SmallestDet {
             det: 0.5,

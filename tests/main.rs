@@ -14,6 +14,7 @@ mod detect_errata;
 mod detect_laws;
 mod detect_simulation;
 mod docs;
+mod finite_strain;
 mod force_map_csv;
 mod force_map_json;
 mod oracle_command;

@@ -2,7 +2,7 @@
 
 mod any;
 
-use palpate::phantom::{BUILTIN_NAMES, Phantom, Shape, Support};
+use palpate::phantom::{BUILTIN_NAMES, Phantom, Shape, Strain, Support};
 use palpate_asserts::{assert_cases, changed};
 
 /// The example of `spec/phantom.md`, which is the built-in phantom `2.6`.
@@ -22,6 +22,36 @@ fn refusal(old: &str, new: &str) -> String {
 /// What is said of a file, or `good` if nothing is.
 fn told(text: &str, good: &str) -> String {
     read(text).map_or_else(|message| message, |_| good.into())
+}
+
+// Verifies: PHA-019, PHA-021, PHA-031, PHA-032.
+#[test]
+fn finite_strain_friction_and_fibres_are_read() {
+    let gel = "thickness_mm = 15.0\n";
+    let text = EXAMPLE.replace("[well]", "strain = \"finite\"\n[well]");
+    let text = text.replace(
+        gel,
+        &format!("{gel}yeoh_c20_kpa = 1.5\nfibre_modulus_kpa = 20\n"),
+    );
+    let phantom = read(&text).unwrap();
+    assert_eq!(phantom.strain(), Strain::Finite);
+    let material = phantom.layers()[1].material;
+    assert_eq!((material.yeoh_c20, material.fibre_modulus), (1500.0, 20e3));
+    // Along x, the fibres leave the phantom its own mirror image; obliquely not; nor does friction, which has a direction.
+    assert!(phantom.is_symmetric() && phantom.mirror_image().as_ref() == Some(&phantom));
+    let oblique = phantom.changed(|parts| parts.layers[1].material.fibre_angle_deg = 30.0);
+    let rough = phantom.changed(|parts| parts.probe.friction = 0.3);
+    let keys = ["layer[1].fibre_angle_deg", "probe.friction"];
+    for ((key, value), changed) in keys.into_iter().zip([30.0, 0.3]).zip([oblique, rough]) {
+        let changed = changed.unwrap();
+        assert!(
+            !changed.is_symmetric() && changed.mirror_image().is_none(),
+            "{key}"
+        );
+        assert_eq!(changed.number(key), Some(value));
+    }
+    let upright = phantom.changed(|parts| parts.layers[1].material.fibre_angle_deg = 90.0);
+    assert!(upright.unwrap().is_symmetric());
 }
 
 // Verifies: PHA-021.

@@ -38,6 +38,7 @@ pub fn certificate(min_det: Matrix, smallest_det: SmallestDet) -> Certificate {
         elements: 3000,
         element: "t6".into(),
         contact: "deformed-normal".into(),
+        law: None,
         arithmetic: "other".into(),
         smallest_det,
         min_det,

@@ -12,7 +12,7 @@ use super::error::refuse;
 use super::numbers::{List, contact, length, moduli, positions};
 use super::output::{Envelope, write};
 use super::progress::{resumed_bar, tell_large_mesh};
-use super::solve::{phantom, tell_large_strain};
+use super::solve::{TheoryArguments, phantom, tell_large_strain};
 use palpate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
 use palpate::decimal::{kpa, mm};
 use palpate::fem::{Contact, arithmetic};
@@ -33,6 +33,8 @@ pub struct BankArguments {
     /// Built-in phantom (2.6, 4.6, 6.6, 8.6) or phantom file; its one inclusion is varied
     #[arg(long, value_name = "NAME|FILE")]
     phantom: String,
+    #[command(flatten)]
+    theory: TheoryArguments,
     /// Lateral positions of the inclusion's centre in mm: a,b,c or from:to:step
     #[arg(long = "offsets-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
     positions: List,
@@ -105,7 +107,7 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
         let out = out.display();
         refuse!("{out}: already exists; choose another --out or delete it");
     }
-    let phantom = phantom(&arguments.phantom)?;
+    let phantom = arguments.theory.of(&phantom(&arguments.phantom)?)?;
     let plan = arguments.plan(&phantom)?;
     let solves = plan.solves()?;
     tell_large_mesh(&phantom, plan.mesh_size).map_err(CliError::fem(phantom.name()))?;

@@ -99,6 +99,12 @@ pub fn newtons(text: &str) -> Result<f64, String> {
     number(text, 0, |force| force > 0.0, must_be)
 }
 
+/// Reads a coefficient of friction.
+pub fn friction(text: &str) -> Result<f64, String> {
+    let must_be = "a coefficient of friction of at least 0, such as 0.3";
+    number(text, 0, |friction| friction >= 0.0, must_be)
+}
+
 /// Reads a probability from which something is sure.
 pub fn sure_probability(text: &str) -> Result<f64, String> {
     let is_right = |p: f64| p > 0.5 && p < 1.0;

@@ -10,7 +10,7 @@ use super::CliError;
 use super::config::Config;
 use super::output::{make_folder, note, print, write};
 use super::progress::{bar, tell_large_mesh};
-use super::solve::tell_large_strain;
+use super::solve::{TheoryArguments, tell_large_strain};
 use palpate::csv::Layout;
 use palpate::fem::certify::certified_map;
 use palpate::fem::{FemError, Model, Pose};
@@ -29,6 +29,8 @@ pub struct RunArguments {
     /// TOML file with phantoms, poses and noise to use instead of the paper's
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
+    #[command(flatten)]
+    theory: TheoryArguments,
     /// Results of 'palpate study merge' for the same phantoms, to include in the report
     #[arg(long, value_name = "FILE")]
     study: Option<PathBuf>,
@@ -46,6 +48,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
         None => Config::default(),
     };
     let phantoms = config.read_phantoms()?;
+    let phantoms = phantoms.iter().map(|phantom| arguments.theory.of(phantom));
+    let phantoms = phantoms.collect::<Result<Vec<_>, _>>()?;
     let measured = config.measured.iter();
     let measured = measured.map(|path| measured_map(&config.file(path), &config.columns));
     let measured = measured.collect::<Result<_, _>>()?;

@@ -7,14 +7,14 @@ use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::error::refuse;
-use super::numbers::{List, contact, length, positions};
+use super::numbers::{List, contact, friction, length, positions};
 use super::output::{print, write};
 use super::progress::{bar, tell_large_mesh};
 use palpate::decimal::mm;
 use palpate::fem::certify::certified_map;
 use palpate::fem::{Contact, MESH_SIZE, Model, Pose, SMALL_STRAIN_LIMIT};
 use palpate::force_map::{ForceMap, SmallestDet};
-use palpate::phantom::{BUILTIN_NAMES, Phantom};
+use palpate::phantom::{BUILTIN_NAMES, Phantom, Strain};
 
 /// Arguments of `palpate solve`.
 #[derive(Debug, Args)]
@@ -22,6 +22,8 @@ pub struct SolveArguments {
     /// Built-in phantom (none, 2.6, 4.6, 6.6, 8.6: the inclusion's depth in mm) or phantom file
     #[arg(long, value_name = "NAME|FILE")]
     phantom: String,
+    #[command(flatten)]
+    theory: TheoryArguments,
     /// Depths of the probe in mm: a,b,c or from:to:step
     #[arg(long = "depths-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
     depths: List,
@@ -55,6 +57,42 @@ enum MapFormat {
     Csv,
 }
 
+/// The theory of a phantom, where it is not that of its file.
+#[derive(Debug, Args)]
+pub struct TheoryArguments {
+    /// Theory of the gel [default: that of the phantom, small unless its file says finite]
+    #[arg(long, value_enum, value_name = "THEORY")]
+    strain: Option<Theory>,
+    /// Coefficient of friction between probe and surface, at finite strain; the probe slides to the right [default: that of the phantom]
+    #[arg(long, value_parser = friction, allow_hyphen_values = true, value_name = "MU")]
+    friction: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Theory {
+    /// Linear elasticity, as the paper's; without friction.
+    Small,
+    /// A neo-Hookean gel at finite strain.
+    Finite,
+}
+
+impl TheoryArguments {
+    /// The phantom under this theory.
+    ///
+    /// Implements: CLI-177.
+    pub fn of(&self, phantom: &Phantom) -> Result<Phantom, CliError> {
+        let changed = phantom.changed(|parts| {
+            parts.strain = match self.strain {
+                None => parts.strain,
+                Some(Theory::Small) => Strain::Small,
+                Some(Theory::Finite) => Strain::Finite,
+            };
+            parts.probe.friction = self.friction.unwrap_or(parts.probe.friction);
+        });
+        Ok(changed?)
+    }
+}
+
 /// The built-in phantom of that name, or the one in the file.
 ///
 /// Implements: CLI-012.
@@ -80,7 +118,7 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         (Some(path), &[depth], &[lateral]) => Some((path, Pose { depth, lateral })),
         _ => refuse!("--vtu shows one pose: give one depth and one lateral position"),
     };
-    let phantom = phantom(&arguments.phantom)?;
+    let phantom = arguments.theory.of(&phantom(&arguments.phantom)?)?;
     let failed = CliError::fem(phantom.name());
     let size = arguments.mesh_size.unwrap_or(MESH_SIZE);
     tell_large_mesh(&phantom, size).map_err(&failed)?;
@@ -134,7 +172,7 @@ pub fn tell_large_strain(map: &ForceMap, phantom: &str) -> Result<(), CliError> 
             "{found}: the gel is turned inside out there, and the forces are meaningless; try smaller depths"
         )));
     }
-    if det < SMALL_STRAIN_LIMIT {
+    if det < SMALL_STRAIN_LIMIT && certificate.law.is_none() {
         eprintln!("palpate: warning: {found}: the small-strain model is at its limit there");
     }
     Ok(())

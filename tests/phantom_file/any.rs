@@ -1,7 +1,7 @@
 //! Phantoms and files at random.
 
 use palpate::phantom::{
-    Inclusion, Layer, Material, Phantom, PhantomParts, Probe, Shape, Support, Well,
+    Inclusion, Layer, Material, Phantom, PhantomParts, Probe, Shape, Strain, Support, Well,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -10,9 +10,14 @@ use super::{EXAMPLE, read};
 use palpate_asserts::seeded;
 
 fn material() -> impl Strategy<Value = Material> {
-    (1e-3..1e12, -0.999..0.4995).prop_map(|(youngs_modulus, poisson_ratio)| Material {
-        youngs_modulus,
-        poisson_ratio,
+    let fibres = prop::option::of((0.0..1e12, -360.0..360.0));
+    (1e-3..1e12, -0.999..0.4995, fibres).prop_map(|(youngs_modulus, poisson_ratio, fibres)| {
+        let (fibre_modulus, fibre_angle_deg) = fibres.unwrap_or_default();
+        Material {
+            fibre_modulus,
+            fibre_angle_deg,
+            ..Material::isotropic(youngs_modulus, poisson_ratio)
+        }
     })
 }
 
@@ -56,8 +61,9 @@ fn phantom() -> impl Strategy<Value = Phantom> {
         ][..],
     );
     let sizes = (0.01..1.0f64, 0.001..0.999, 1e-6..1.0);
-    (name(), sizes, supports, vec(layer, 1..5)).prop_map(
-        |(name, (width, share, length), (walls, floor), stack)| {
+    let finite = prop::option::of((0.0..2.0, 0.0..1e12));
+    (name(), sizes, supports, vec(layer, 1..5), finite).prop_map(
+        |(name, (width, share, length), (walls, floor), stack, finite)| {
             let (mut layers, mut inclusions, mut top) = (Vec::new(), Vec::new(), 0.0);
             for (name, thickness, material, cells) in stack {
                 let cell = (width - 0.0002) / cells.len() as f64;
@@ -86,12 +92,20 @@ fn phantom() -> impl Strategy<Value = Phantom> {
                 walls,
                 floor,
             };
+            let strain = finite.map_or(Strain::Small, |_| Strain::Finite);
+            let (friction, yeoh_c20) = finite.unwrap_or_default();
+            layers[0].material.yeoh_c20 = yeoh_c20;
             let parts = PhantomParts {
                 name,
+                strain,
                 well,
                 layers,
                 inclusions,
-                probe: Probe { radius, length },
+                probe: Probe {
+                    radius,
+                    length,
+                    friction,
+                },
             };
             Phantom::new(parts).expect("sizes that fit")
         },

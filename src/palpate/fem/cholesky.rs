@@ -32,7 +32,7 @@ pub struct Factor {
     pub(super) surface: Mat<f64>,
 }
 
-fn scratch(request: faer::dyn_stack::StackReq) -> Result<MemBuffer, FemError> {
+pub(super) fn scratch(request: faer::dyn_stack::StackReq) -> Result<MemBuffer, FemError> {
     MemBuffer::try_new(request).map_err(|_| FemError::OutOfMemory)
 }
 

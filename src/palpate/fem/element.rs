@@ -74,11 +74,15 @@ pub(super) fn lame(material: &Material) -> (f64, f64) {
 pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
     let (lambda, mu) = lame(material);
     let pressure = lambda * (gradient[0][0] + gradient[1][1]);
+    let shear = gradient[0][1] + gradient[1][0];
+    let [a, b] = material.fibre_direction();
+    let stretch = gradient[0][0] * a * a + gradient[1][1] * b * b + shear * a * b;
+    let tension = material.fibre_modulus * stretch;
     [
-        pressure + 2.0 * mu * gradient[0][0],
-        pressure + 2.0 * mu * gradient[1][1],
+        pressure + 2.0 * mu * gradient[0][0] + tension * a * a,
+        pressure + 2.0 * mu * gradient[1][1] + tension * b * b,
         pressure,
-        mu * (gradient[0][1] + gradient[1][0]),
+        mu * shear + tension * a * b,
     ]
 }
 
@@ -93,11 +97,15 @@ const COWPER: [(f64, f64); 2] = [
     (0.091_576_213_509_770_74, 0.109_951_743_655_321_87 / 2.0),
 ];
 
+/// The points in parent coordinates, and their weights.
+pub(super) fn quadrature() -> impl Iterator<Item = ([f64; 2], f64)> {
+    let medians = COWPER.iter();
+    medians.flat_map(|&(a, weight)| symmetric_points(a).map(|at| (at, weight)))
+}
+
 impl Default for StiffnessRule {
     fn default() -> StiffnessRule {
-        let points = COWPER
-            .iter()
-            .flat_map(|&(a, weight)| symmetric_points(a).map(|at| (parent_gradients(at), weight)));
+        let points = quadrature().map(|(at, weight)| (parent_gradients(at), weight));
         StiffnessRule(points.collect())
     }
 }
@@ -105,11 +113,13 @@ impl Default for StiffnessRule {
 impl StiffnessRule {
     /// Stiffness of an element with nodes at `positions`, or the Jacobian that is not positive.
     ///
-    /// The block of nodes a, b is ∫ λ ∇N_a ∇N_bᵀ + μ ∇N_b ∇N_aᵀ + μ (∇N_a·∇N_b) I.
+    /// The block of nodes a, b is ∫ λ ∇N_a ∇N_bᵀ + μ ∇N_b ∇N_aᵀ + μ (∇N_a·∇N_b) I, and for fibres along f with the modulus E_f
+    /// ∫ E_f (∇N_a·f)(∇N_b·f) f fᵀ more.
     ///
     /// Implements: FEM-017.
     pub fn integrate(&self, positions: &[[f64; 2]], material: &Material) -> Result<Stiffness, f64> {
         let (lambda, mu) = lame(material);
+        let fibres = Vector2::from(material.fibre_direction());
         let mut stiffness = Stiffness::zeros();
         for (parent, weight) in &self.0 {
             let g = gradients(parent, positions);
@@ -126,6 +136,10 @@ impl StiffnessRule {
                     block += lambda * ga * gb.transpose()
                         + mu * gb * ga.transpose()
                         + Matrix2::from_diagonal_element(mu * ga.dot(&gb));
+                    if material.fibre_modulus > 0.0 {
+                        let both = material.fibre_modulus * ga.dot(&fibres) * gb.dot(&fibres);
+                        block += both * fibres * fibres.transpose();
+                    }
                 }
             }
         }

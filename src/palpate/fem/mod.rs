@@ -23,6 +23,7 @@ pub mod cholesky;
 mod contact;
 pub mod element;
 mod field;
+pub mod finite;
 pub mod mesh;
 mod model;
 mod ordering;
@@ -39,7 +40,7 @@ use crate::refusal::Refusal;
 pub use contact::{Contact, ContactState, Surface};
 pub use field::{Field, FieldCheck};
 pub use mesh::{Mesh, Region};
-pub use model::{Model, PoseSolution};
+pub use model::{Model, PoseSolution, State};
 pub use size::MESH_SIZE;
 
 /// Below this det(I + ∇u) a compressed neighbourhood has lost four fifths of its area, and small-strain

@@ -5,6 +5,7 @@ use super::cholesky::{Factor, check_residual};
 use super::contact::{Contact, ContactState, Surface};
 use super::element::SAMPLES;
 use super::field::{BATCH, Field, FieldCheck, SamplingPoint, check, samples};
+use super::finite::{Equilibrium, FiniteModel, Friction, LAW};
 use super::mesh::Mesh;
 use super::size::SizeField;
 use super::{FemError, Pose, arithmetic};
@@ -12,7 +13,8 @@ use crate::force::Force;
 use crate::force_map::{
     Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source, check_axes, increasing,
 };
-use crate::phantom::Phantom;
+use crate::phantom::{Phantom, Strain};
+use crate::refusal::Refusal;
 
 /// A phantom, meshed and factorised.
 ///
@@ -39,6 +41,7 @@ pub struct Model {
     pub(super) factor: Factor,
     surface: Surface,
     pub(super) samples: Vec<SamplingPoint>,
+    pub(super) finite: Option<FiniteModel>,
 }
 
 /// The probe at rest at one pose.
@@ -52,8 +55,17 @@ pub struct PoseSolution {
     pub energy: f64,
     /// Largest penetration of a contact point, m.
     pub penetration: f64,
-    /// Displacements and contact forces of the surface.
-    pub state: ContactState,
+    /// The gel at rest.
+    pub state: State,
+}
+
+/// The gel at rest under the probe.
+#[derive(Debug, Clone, PartialEq)]
+pub enum State {
+    /// At small strain: displacements and contact forces of the surface.
+    Small(ContactState),
+    /// At finite strain.
+    Finite(Box<Equilibrium>),
 }
 
 /// Deepest step between two poses of which one starts the other, over the probe's radius.
@@ -66,7 +78,9 @@ impl Model {
     ///
     /// # Errors
     /// As [`Mesh::new`], [`StiffnessMatrix::assemble`] and
-    /// [`Factor::new`].
+    /// [`Factor::new`]; a vertical gap at finite strain.
+    ///
+    /// Implements: FIN-009.
     pub fn new(phantom: &Phantom, mesh_size: f64, contact: Contact) -> Result<Model, FemError> {
         let mesh = Mesh::new(phantom, mesh_size)?;
         let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
@@ -74,6 +88,17 @@ impl Model {
         let compliance = factor.surface_compliance(&matrix)?;
         let surface = Surface::new(&mesh, &compliance, phantom.probe(), contact);
         let samples = samples(&mesh, &matrix, &SizeField::new(phantom, mesh_size));
+        let finite = match phantom.strain() {
+            Strain::Small => None,
+            Strain::Finite => {
+                let found = format!("{} contact at finite strain", contact.name());
+                let expected = "give deformed-normal contact, or strain = \"small\"";
+                let refusal = Refusal::state(found, expected);
+                refusal.when(contact != Contact::DeformedNormal)?;
+                let friction = Friction::steady(phantom.probe().friction);
+                Some(FiniteModel::new(phantom, &mesh, friction)?)
+            }
+        };
         Ok(Model {
             phantom: phantom.clone(),
             mesh_size,
@@ -82,6 +107,7 @@ impl Model {
             factor,
             surface,
             samples,
+            finite,
         })
     }
 
@@ -100,7 +126,7 @@ impl Model {
         &self.mesh
     }
 
-    /// The surface with its compliance.
+    /// The surface with its compliance at small strain.
     pub fn surface(&self) -> &Surface {
         &self.surface
     }
@@ -119,7 +145,7 @@ impl Model {
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
         self.check_pose(pose)?;
         // Where the phantom is symmetric the right half stands for both, so that mirrored poses have mirrored forces to the bit.
-        if self.mesh.symmetric && pose.lateral < 0.0 {
+        if self.mesh.symmetric && self.finite.is_none() && pose.lateral < 0.0 {
             let mut image = self.column(&[pose.depth], -pose.lateral)?;
             return Ok(image.swap_remove(0).mirrored());
         }
@@ -169,7 +195,7 @@ impl Model {
             force: self.surface.probe_force(&state, pose),
             energy: work.sum(),
             penetration: self.surface.penetration(&state, pose),
-            state,
+            state: State::Small(state),
         }
     }
 
@@ -178,14 +204,27 @@ impl Model {
     /// # Errors
     /// [`FemError::Residual`].
     pub fn field(&self, solution: &PoseSolution) -> Result<Field, FemError> {
-        let mut force = vec![0.0; self.matrix.unknowns()];
-        let (_, forces) = self.surface.at_nodes(&solution.state, solution.pose);
-        for (place, load) in self.matrix.surface.iter().zip(forces.as_flattened()) {
-            if let Some(unknown) = *place {
-                force[unknown] = *load;
+        let mut u = vec![0.0; self.matrix.unknowns()];
+        match &solution.state {
+            State::Small(state) => {
+                let (_, forces) = self.surface.at_nodes(state, solution.pose);
+                for (place, load) in self.matrix.surface.iter().zip(forces.as_flattened()) {
+                    if let Some(unknown) = *place {
+                        u[unknown] = *load;
+                    }
+                }
+                u = self.factor.solve(&self.matrix, &u)?.0;
+            }
+            State::Finite(equilibrium) => {
+                for (node, moved) in equilibrium.displacements.iter().enumerate() {
+                    for (k, moved) in moved.iter().enumerate() {
+                        if let Some(unknown) = self.matrix.unknown(node, k) {
+                            u[unknown] = *moved;
+                        }
+                    }
+                }
             }
         }
-        let (u, _) = self.factor.solve(&self.matrix, &force)?;
         // The row of zeros behind the unknowns stands for what is held.
         let rows: Vec<[f64; 1]> = u.iter().map(|&u| [u]).chain([[0.0]]).collect();
         let row = |node, k| self.matrix.unknown(node, k).unwrap_or(u.len());
@@ -200,16 +239,24 @@ impl Model {
         })
     }
 
-    /// The checks of the whole field at each solved pose.
+    /// The checks of the whole field at each solved pose of this model.
     ///
     /// # Errors
     /// [`FemError::OutOfMemory`].
     pub fn checks(&self, solutions: &[PoseSolution]) -> Result<Vec<FieldCheck>, FemError> {
-        let pose = |s: &PoseSolution| self.surface.at_nodes(&s.state, s.pose);
-        let mut checks = Vec::with_capacity(solutions.len());
-        for chunk in solutions.chunks(BATCH) {
-            let poses: Vec<_> = chunk.iter().map(pose).collect();
-            checks.extend(check(&self.matrix, &self.factor, &self.samples, &poses)?);
+        let equilibria = solutions
+            .iter()
+            .filter_map(|solution| match &solution.state {
+                State::Finite(equilibrium) => Some(equilibrium.check),
+                State::Small(_) => None,
+            });
+        let mut checks: Vec<FieldCheck> = equilibria.collect();
+        let small = solutions
+            .iter()
+            .filter_map(|s| Some((s.contact()?, s.pose)));
+        let poses = small.map(|(state, pose)| self.surface.at_nodes(state, pose));
+        for poses in poses.collect::<Vec<_>>().chunks(BATCH) {
+            checks.extend(check(&self.matrix, &self.factor, &self.samples, poses)?);
         }
         Ok(checks)
     }
@@ -218,6 +265,14 @@ impl Model {
     ///
     /// Implements: FEM-063.
     fn column(&self, depths: &[f64], lateral: f64) -> Result<Vec<PoseSolution>, FemError> {
+        if let Some(finite) = &self.finite {
+            let poses: Vec<Pose> = depths
+                .iter()
+                .map(|&depth| Pose { depth, lateral })
+                .collect();
+            let column = finite.path(finite.untouched(lateral), &poses)?;
+            return Ok(column.into_iter().map(PoseSolution::from).collect());
+        }
         let above = Pose {
             depth: 0.0,
             lateral,
@@ -303,10 +358,19 @@ impl Model {
         let mut solutions: Vec<PoseSolution> = Vec::with_capacity(right.len());
         for &lateral in &right {
             let pose = Pose { depth, lateral };
-            let near = solutions.last();
-            let near = near.and_then(|near| self.surface.solve(pose, &near.state).ok());
-            match near {
-                Some(state) => solutions.push(self.solution(pose, state)),
+            let near = solutions
+                .last()
+                .map(|near| match (&near.state, &self.finite) {
+                    (State::Small(state), _) => {
+                        Some(self.solution(pose, self.surface.solve(pose, state).ok()?))
+                    }
+                    (State::Finite(near), Some(finite)) => {
+                        Some(finite.lead(near, None, pose).ok()?.into())
+                    }
+                    (State::Finite(_), None) => None,
+                });
+            match near.flatten() {
+                Some(solution) => solutions.push(solution),
                 None => solutions.extend(self.column(&[depth], lateral)?),
             }
         }
@@ -380,15 +444,16 @@ impl Model {
             worst_relative_residual: largest(checks.iter().map(|check| check.residual)),
             worst_force_balance: largest(checks.iter().map(|check| check.imbalance)),
             largest_penetration: largest(solutions.iter().map(|s| s.penetration)),
-            newton_iterations: solutions.iter().map(|s| s.state.iterations).sum(),
+            newton_iterations: solutions.iter().map(PoseSolution::iterations).sum(),
             mesh_size: self.mesh_size,
             nodes: self.mesh.nodes.len(),
             elements: self.mesh.regions.len(),
-            element: "t6".into(),
+            element: self.finite.as_ref().map_or("t6", |_| "taylor-hood").into(),
             contact: self.surface.contact.name().into(),
             arithmetic: arithmetic().into(),
             smallest_det,
             min_det,
+            law: self.finite.as_ref().map(|_| LAW.into()),
             discretization: None,
         })
     }
@@ -399,12 +464,42 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, f64::max)
 }
 
+impl From<Equilibrium> for PoseSolution {
+    fn from(equilibrium: Equilibrium) -> PoseSolution {
+        PoseSolution {
+            pose: equilibrium.pose,
+            force: equilibrium.force,
+            energy: equilibrium.energy,
+            penetration: equilibrium.penetration,
+            state: State::Finite(equilibrium.into()),
+        }
+    }
+}
+
 impl PoseSolution {
-    /// The same probe at −x.
+    /// Displacements and contact forces of the surface at small strain; `None` at finite strain.
+    pub fn contact(&self) -> Option<&ContactState> {
+        match &self.state {
+            State::Small(state) => Some(state),
+            State::Finite(_) => None,
+        }
+    }
+
+    /// Newton's iterations spent on this pose.
+    fn iterations(&self) -> usize {
+        match &self.state {
+            State::Small(state) => state.iterations,
+            State::Finite(equilibrium) => equilibrium.iterations,
+        }
+    }
+
+    /// The same probe at −x, at small strain.
     fn mirrored(mut self) -> PoseSolution {
         self.pose.lateral = -self.pose.lateral;
         self.force.lateral = -self.force.lateral;
-        self.state = self.state.mirrored();
+        if let State::Small(state) = self.state {
+            self.state = State::Small(state.mirrored());
+        }
         self
     }
 }

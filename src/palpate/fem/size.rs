@@ -3,7 +3,7 @@
 use core::f64::consts::FRAC_PI_2;
 
 use super::triangle::Point;
-use crate::phantom::{Outline, Phantom, Support, edges, point_to_segment};
+use crate::phantom::{Outline, Phantom, Strain, Support, edges, point_to_segment};
 
 /// The mesh size, m, at which the sizes below hold as they stand; any other scales them all.
 pub const MESH_SIZE: f64 = 0.5e-3;
@@ -56,7 +56,8 @@ impl SizeField {
         // A coarse mesh must follow a bend too.
         let bend = BEND * (MESH_SIZE / size).min(1.0);
         let mut corners = Vec::new();
-        if phantom.well().walls == Support::Fixed {
+        // Where the gel may turn inside out, so fine a mesh of the singular strain in a corner would.
+        if phantom.well().walls == Support::Fixed && phantom.strain() == Strain::Small {
             for &y in &levels[..levels.len() - 1] {
                 corners.extend([-half_width, half_width].map(|x| (Point::new(x, y), WALL_CORNER)));
             }

@@ -1,9 +1,9 @@
 //! One pose as a VTK unstructured grid in ASCII (`.vtu`), for ParaView.
 
-use super::element::{NODES, stress};
+use super::element::{NODES, SAMPLES, stress};
 use super::field::determinant;
 use super::mesh::Region;
-use super::{FemError, Model, PoseSolution};
+use super::{FemError, Model, PoseSolution, State};
 
 /// VTK's type of cell.
 const QUADRATIC_TRIANGLE: u8 = 22;
@@ -30,12 +30,21 @@ impl Model {
             Region::Inclusion(k) => [self.phantom().layers().len() + k],
         };
         let per_element_of = field.gradients.iter().zip(&mesh.regions);
-        let stresses = per_element_of.map(|(points, region)| {
-            let material = region.material(self.phantom());
-            let stresses = points.iter().map(|&g| stress(material, g));
-            let sum = stresses.fold([0.0; 4], |a, b| [0, 1, 2, 3].map(|k| a[k] + b[k]));
-            sum.map(|component| component / points.len() as f64)
-        });
+        let stresses = per_element_of
+            .enumerate()
+            .map(|(element, (points, region))| {
+                let material = region.material(self.phantom());
+                let stresses = points.iter().zip(SAMPLES).map(|(&gradient, at)| {
+                    match (&self.finite, &solution.state) {
+                        (Some(finite), State::Finite(rest)) => {
+                            finite.stress(rest, element, at, gradient)
+                        }
+                        _ => stress(material, gradient),
+                    }
+                });
+                let sum = stresses.fold([0.0; 4], |a, b| [0, 1, 2, 3].map(|k| a[k] + b[k]));
+                sum.map(|component| component / points.len() as f64)
+            });
         let stresses: Vec<[f64; 4]> = stresses.collect();
         let dets = field.gradients.iter().map(|points| {
             let dets = points.iter().map(|&g| determinant(g));

@@ -34,6 +34,11 @@ pub struct Certificate {
     pub element: String,
     /// The name of the contact law, as on the command line.
     pub contact: String,
+    /// The name of the material's law at finite strain; `None` at small strain.
+    ///
+    /// Implements: FIN-008.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub law: Option<String>,
     /// The class of processors that has the same bits of every force.
     ///
     /// Implements: CON-010.

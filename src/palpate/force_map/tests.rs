@@ -53,6 +53,7 @@ pub(crate) fn certificate(min_det: Matrix, smallest_det: SmallestDet) -> Certifi
         elements: 3000,
         element: "t6".into(),
         contact: "deformed-normal".into(),
+        law: None,
         arithmetic: "other".into(),
         smallest_det,
         min_det,

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use super::{Inclusion, Layer, Material, Phantom, PhantomParts, Probe, Shape, Support, Well};
+use super::{
+    Inclusion, Layer, Material, Phantom, PhantomParts, Probe, Shape, Strain, Support, Well,
+};
 use crate::decimal::{Kpa, Mm, Plain, Scaled, kpa, mm, plain};
 use crate::file::Tree;
 use crate::refusal::Refusal;
@@ -15,6 +17,8 @@ use crate::refusal::Refusal;
 #[serde(deny_unknown_fields, expecting = "a table")]
 struct PhantomFile {
     name: String,
+    #[serde(default)]
+    strain: Strain,
     well: WellTable,
     layer: Vec<LayerTable>,
     #[serde(default)]
@@ -39,6 +43,9 @@ struct LayerTable {
     thickness_mm: Mm,
     youngs_modulus_kpa: Kpa,
     poisson_ratio: Plain,
+    yeoh_c20_kpa: Option<Kpa>,
+    fibre_modulus_kpa: Option<Kpa>,
+    fibre_angle_deg: Option<Plain>,
 }
 
 /// An inclusion, with the keys of any shape.
@@ -54,6 +61,9 @@ struct InclusionKeys {
     points_mm: Option<Vec<[Mm; 2]>>,
     youngs_modulus_kpa: Kpa,
     poisson_ratio: Plain,
+    yeoh_c20_kpa: Option<Kpa>,
+    fibre_modulus_kpa: Option<Kpa>,
+    fibre_angle_deg: Option<Plain>,
 }
 
 /// An inclusion, with the keys of one shape.
@@ -66,6 +76,7 @@ struct InclusionTable(Inclusion);
 struct ProbeTable {
     radius_mm: Mm,
     length_mm: Mm,
+    friction: Option<Plain>,
 }
 
 impl From<PhantomFile> for PhantomParts {
@@ -73,10 +84,16 @@ impl From<PhantomFile> for PhantomParts {
         let layer = |(at, layer): (usize, LayerTable)| Layer {
             name: layer.name.unwrap_or_else(|| format!("layer[{at}]")),
             thickness: layer.thickness_mm.0,
-            material: material(layer.youngs_modulus_kpa, layer.poisson_ratio),
+            material: Material {
+                yeoh_c20: number(layer.yeoh_c20_kpa),
+                fibre_modulus: number(layer.fibre_modulus_kpa),
+                fibre_angle_deg: number(layer.fibre_angle_deg),
+                ..Material::isotropic(layer.youngs_modulus_kpa.0, layer.poisson_ratio.0)
+            },
         };
         PhantomParts {
             name: file.name,
+            strain: file.strain,
             well: Well {
                 width: file.well.width_mm.0,
                 walls: file.well.walls,
@@ -87,6 +104,7 @@ impl From<PhantomFile> for PhantomParts {
             probe: Probe {
                 radius: file.probe.radius_mm.0,
                 length: file.probe.length_mm.0,
+                friction: number(file.probe.friction),
             },
         }
     }
@@ -97,10 +115,15 @@ impl TryFrom<InclusionKeys> for InclusionTable {
 
     fn try_from(keys: InclusionKeys) -> Result<InclusionTable, String> {
         Ok(InclusionTable(Inclusion {
-            centre_x: keys.centre_x_mm.map_or(0.0, |x| x.0),
+            centre_x: number(keys.centre_x_mm),
             depth: keys.depth_mm.0,
             shape: keys.shape()?,
-            material: material(keys.youngs_modulus_kpa, keys.poisson_ratio),
+            material: Material {
+                yeoh_c20: number(keys.yeoh_c20_kpa),
+                fibre_modulus: number(keys.fibre_modulus_kpa),
+                fibre_angle_deg: number(keys.fibre_angle_deg),
+                ..Material::isotropic(keys.youngs_modulus_kpa.0, keys.poisson_ratio.0)
+            },
         }))
     }
 }
@@ -112,7 +135,7 @@ impl InclusionKeys {
         match (self.diameter_mm, sizes, self.angle_deg, points) {
             (Some(Scaled(diameter)), [None, None], None, None) => Ok(Shape::Disc { diameter }),
             (None, [Some(Scaled(width)), Some(Scaled(height))], angle, None) => {
-                let angle_deg = angle.map_or(0.0, |angle| angle.0);
+                let angle_deg = number(angle);
                 Ok(Shape::Ellipse {
                     width,
                     height,
@@ -144,11 +167,9 @@ impl InclusionKeys {
     }
 }
 
-fn material(modulus: Kpa, poisson_ratio: Plain) -> Material {
-    Material {
-        youngs_modulus: modulus.0,
-        poisson_ratio: poisson_ratio.0,
-    }
+/// The number under a key that may be missing, else 0.
+fn number<const POWER: i32>(written: Option<Scaled<POWER>>) -> f64 {
+    written.map_or(0.0, |number| number.0)
 }
 
 impl Phantom {
@@ -199,8 +220,12 @@ impl Phantom {
             floor,
         } = self.0.well;
         let (name, width) = (quoted(&self.0.name), mm(width));
+        let strain = match self.0.strain {
+            Strain::Small => String::new(),
+            strain => format!("strain = \"{strain}\"\n"),
+        };
         let mut text = format!(
-            "name = {name}\n\n[well]\nwidth_mm = {width}\nwalls = \"{walls}\"\nfloor = \"{floor}\"\n"
+            "name = {name}\n{strain}\n[well]\nwidth_mm = {width}\nwalls = \"{walls}\"\nfloor = \"{floor}\"\n"
         );
         for layer in &self.0.layers {
             let (name, thickness) = (quoted(&layer.name), mm(layer.thickness));
@@ -217,7 +242,7 @@ impl Phantom {
         }
         let (radius, length) = (mm(self.0.probe.radius), mm(self.0.probe.length));
         text += &format!("\n[probe]\nradius_mm = {radius}\nlength_mm = {length}\n");
-        text
+        text + &unless_zero("friction", plain(self.0.probe.friction))
     }
 
     /// The number at a key of the phantom's file, such as `layer[1].thickness_mm`, in the unit of the key.
@@ -271,6 +296,17 @@ fn from_tree(mut tree: Tree) -> Result<Phantom, Refusal> {
 fn material_lines(material: &Material) -> String {
     let (modulus, ratio) = (kpa(material.youngs_modulus), plain(material.poisson_ratio));
     format!("youngs_modulus_kpa = {modulus}\npoisson_ratio = {ratio}\n")
+        + &unless_zero("yeoh_c20_kpa", kpa(material.yeoh_c20))
+        + &unless_zero("fibre_modulus_kpa", kpa(material.fibre_modulus))
+        + &unless_zero("fibre_angle_deg", plain(material.fibre_angle_deg))
+}
+
+/// The line of a key that need not be there.
+fn unless_zero<const POWER: i32>(key: &str, number: Scaled<POWER>) -> String {
+    match number.0 {
+        0.0 => String::new(),
+        _ => format!("{key} = {number}\n"),
+    }
 }
 
 fn shape_lines(shape: &Shape) -> String {

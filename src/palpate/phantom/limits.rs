@@ -4,7 +4,7 @@ use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::ops::{RangeBounds, RangeInclusive};
 
 use super::shape::{Point, contains, cross, dot, edges, extent, minus, point_to_segment};
-use super::{Inclusion, Material, Outline, Phantom, Shape, Support};
+use super::{Inclusion, Material, Outline, Phantom, Shape, Strain, Support};
 use crate::decimal::{Scaled, kpa, mm, plain};
 use crate::refusal::Refusal;
 
@@ -19,6 +19,14 @@ const LENGTHS: RangeInclusive<f64> = 1e-6..=1.0;
 
 /// Above this Poisson's ratio displacement elements lock, and the stiffness matrix is nearly singular.
 const LARGEST_POISSON_RATIO: f64 = 0.4995;
+/// With pressures as unknowns of their own, no element locks.
+const LARGEST_WITH_PRESSURES: f64 = 0.4999;
+
+/// The largest modulus that need not be there, Pa: no solid is stiffer.
+const LARGEST_MODULUS: f64 = 1e12;
+
+/// The largest coefficient of friction: rubber on dry glass.
+const LARGEST_FRICTION: f64 = 2.0;
 
 /// The larger diameter of an ellipse over the smaller, at most.
 const LARGEST_ASPECT_RATIO: f64 = 20.0;
@@ -49,16 +57,19 @@ impl Phantom {
             check_name(&format!("{key}.name"), &layer.name)?;
             let thickness = mm(layer.thickness);
             within(&format!("{key}.thickness_mm"), thickness, LENGTHS, "")?;
-            check_material(&key, &layer.material)?;
+            check_material(&key, &layer.material, self.0.strain)?;
         }
         within("probe.length_mm", mm(self.0.probe.length), LENGTHS, "")?;
         let radii = *LENGTHS.start()..to_picometre(self.0.well.width / 2.0);
         let why = " (the probe must be narrower than the well)";
         within("probe.radius_mm", mm(self.0.probe.radius), radii, why)?;
+        let friction = plain(self.0.probe.friction);
+        at_finite_strain("probe.friction", friction, self.0.strain, LARGEST_FRICTION)?;
         check_count("inclusion", self.0.inclusions.len(), 0..=100)?;
         for (at, inclusion) in self.0.inclusions.iter().enumerate() {
             let key = format!("inclusion[{at}]");
             check_shape(&key, inclusion)?;
+            check_material(&key, &inclusion.material, self.0.strain)?;
             self.check_place(&key, inclusion)?;
         }
         check_distances(&self.0.inclusions)
@@ -167,13 +178,52 @@ fn check_name(key: &str, name: &str) -> Check {
     refuse(key, format!("{name:?}"), expected)
 }
 
-fn check_material(table: &str, material: &Material) -> Check {
+fn check_material(table: &str, material: &Material, strain: Strain) -> Check {
     let modulus = kpa(material.youngs_modulus);
     let moduli = (Excluded(0.0), Unbounded);
     within(&format!("{table}.youngs_modulus_kpa"), modulus, moduli, "")?;
-    let ratios = (Excluded(-1.0), Included(LARGEST_POISSON_RATIO));
+    let largest = match strain {
+        Strain::Small => LARGEST_POISSON_RATIO,
+        Strain::Finite => LARGEST_WITH_PRESSURES,
+    };
+    let ratios = (Excluded(-1.0), Included(largest));
     let ratio = plain(material.poisson_ratio);
-    within(&format!("{table}.poisson_ratio"), ratio, ratios, "")
+    within(&format!("{table}.poisson_ratio"), ratio, ratios, "")?;
+    at_finite_strain(
+        &format!("{table}.yeoh_c20_kpa"),
+        kpa(material.yeoh_c20),
+        strain,
+        LARGEST_MODULUS,
+    )?;
+    let (fibres, angle) = (kpa(material.fibre_modulus), plain(material.fibre_angle_deg));
+    within(
+        &format!("{table}.fibre_modulus_kpa"),
+        fibres,
+        0.0..=LARGEST_MODULUS,
+        "",
+    )?;
+    within(
+        &format!("{table}.fibre_angle_deg"),
+        angle,
+        -360.0..=360.0,
+        "",
+    )
+}
+
+/// Refuses a number that is not between 0 and `largest`, or not 0 at small strain, where it would change nothing.
+///
+/// Implements: PHA-032.
+fn at_finite_strain<const POWER: i32>(
+    key: &str,
+    number: Scaled<POWER>,
+    strain: Strain,
+    largest: f64,
+) -> Check {
+    if strain == Strain::Small && number.0 != 0.0 {
+        let expected = "0, or the phantom at strain = \"finite\"";
+        return refuse(key, number.to_string(), expected);
+    }
+    within(key, number, 0.0..=largest, "")
 }
 
 /// All that needs no other part of the phantom.
@@ -197,7 +247,7 @@ fn check_shape(table: &str, inclusion: &Inclusion) -> Check {
         }
         Shape::Polygon { points } => check_polygon(&key("points_mm"), points)?,
     }
-    check_material(table, &inclusion.material)
+    Ok(())
 }
 
 fn check_polygon(key: &str, points: &[Point]) -> Check {

@@ -41,7 +41,9 @@ pub use shape::{edges, point_to_segment};
 
 use crate::refusal::Refusal;
 
-/// A linear isotropic elastic material.
+/// An elastic material: isotropic at small strain but for its fibres.
+///
+/// Implements: PHA-031.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 pub struct Material {
@@ -50,6 +52,69 @@ pub struct Material {
     pub youngs_modulus: f64,
     /// Poisson's ratio ν.
     pub poisson_ratio: f64,
+    /// Yeoh's second coefficient C₂₀, Pa: how fast the material stiffens at finite strain.
+    #[serde(rename = "yeoh_c20_pa", default, skip_serializing_if = "is_zero")]
+    pub yeoh_c20: f64,
+    /// What fibres add to Young's modulus along them, Pa.
+    #[serde(rename = "fibre_modulus_pa", default, skip_serializing_if = "is_zero")]
+    pub fibre_modulus: f64,
+    /// Angle from +x to the fibres, counter-clockwise.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub fibre_angle_deg: f64,
+}
+
+impl Material {
+    /// An isotropic material with Young's modulus E, Pa, and Poisson's ratio ν, which does not stiffen.
+    pub const fn isotropic(youngs_modulus: f64, poisson_ratio: f64) -> Material {
+        Material {
+            youngs_modulus,
+            poisson_ratio,
+            yeoh_c20: 0.0,
+            fibre_modulus: 0.0,
+            fibre_angle_deg: 0.0,
+        }
+    }
+
+    /// The direction of the fibres.
+    pub fn fibre_direction(&self) -> [f64; 2] {
+        let angle = self.fibre_angle_deg.to_radians();
+        [libm::cos(angle), libm::sin(angle)]
+    }
+
+    /// Whether the mirror image in x is the same material.
+    fn is_symmetric(&self) -> bool {
+        self.fibre_modulus == 0.0 || self.fibre_angle_deg % 90.0 == 0.0
+    }
+}
+
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
+/// The theory that computes the forces.
+///
+/// Implements: PHA-032.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Strain {
+    /// Linear elasticity, as the paper's.
+    #[default]
+    Small,
+    /// Finite strain.
+    Finite,
+}
+
+impl Strain {
+    fn is_small(&self) -> bool {
+        *self == Strain::Small
+    }
+}
+
+/// The word of a file.
+impl fmt::Display for Strain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
+    }
 }
 
 /// How a wall or the floor of the well holds the layers.
@@ -118,7 +183,7 @@ pub struct Inclusion {
     pub material: Material,
 }
 
-/// The rigid, frictionless, semicylindrical probe.
+/// The rigid, semicylindrical probe.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 pub struct Probe {
@@ -128,6 +193,9 @@ pub struct Probe {
     /// Length along the cylinder, m: forces are totals over it.
     #[serde(rename = "length_m")]
     pub length: f64,
+    /// Coulomb's coefficient μ of friction between probe and surface.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub friction: f64,
 }
 
 /// The parts of a phantom, with any values: [`Phantom::new`] makes a phantom of them.
@@ -138,6 +206,9 @@ pub struct Probe {
 pub struct PhantomParts {
     /// A name for tables and figures.
     pub name: String,
+    /// The theory that computes the forces.
+    #[serde(default, skip_serializing_if = "Strain::is_small")]
+    pub strain: Strain,
     /// The well.
     pub well: Well,
     /// The layers, top to bottom; the first one's top is the outer surface.
@@ -233,6 +304,11 @@ impl Phantom {
         &self.0.name
     }
 
+    /// The theory that computes the forces.
+    pub fn strain(&self) -> Strain {
+        self.0.strain
+    }
+
     /// The well.
     pub fn well(&self) -> &Well {
         &self.0.well
@@ -276,11 +352,18 @@ impl Phantom {
     }
 
     /// Whether the phantom is its own mirror image in x, to the bit: each inclusion is on the axis and symmetric, or has a
-    /// mirror image of the same material.
+    /// mirror image of the same material; no fibres are oblique; and the probe does not rub, for that has a direction.
     ///
     /// Implements: PHA-019.
     pub fn is_symmetric(&self) -> bool {
-        self.mirror_images().len() == self.inclusions().len()
+        self.has_mirror_image() && self.mirror_images().len() == self.inclusions().len()
+    }
+
+    /// Whether there is a mirror image in x, as far as materials and friction go.
+    fn has_mirror_image(&self) -> bool {
+        let layers = self.layers().iter().map(|layer| &layer.material);
+        let mut materials = layers.chain(self.inclusions().iter().map(|i| &i.material));
+        self.probe().friction == 0.0 && materials.all(Material::is_symmetric)
     }
 
     /// The number of each inclusion's mirror image; fewer numbers than inclusions where one has none.
@@ -297,6 +380,9 @@ impl Phantom {
     /// The phantom seen from behind: its mirror image in x. `None` where an inclusion is no mirror image of itself but for its
     /// place.
     pub fn mirror_image(&self) -> Option<Phantom> {
+        if !self.has_mirror_image() {
+            return None;
+        }
         let mut image = self.clone();
         for inclusion in &mut image.0.inclusions {
             let place = std::mem::take(&mut inclusion.centre_x);

@@ -32,7 +32,9 @@ fn at_pose(model: &Model, depth: f64, lateral: f64) -> Measured<Option<[f64; 3]>
     let here = at(0.0, 0.0)?;
     let down = [at(-2.0, 0.0)?, at(-1.0, 0.0)?, at(1.0, 0.0)?, at(2.0, 0.0)?];
     let aside = [at(0.0, -2.0)?, at(0.0, -1.0)?, at(0.0, 1.0)?, at(0.0, 2.0)?];
-    let same = |s: &PoseSolution| s.state.active == here.state.active;
+    let same = |s: &PoseSolution| {
+        s.contact().expect("small strain").active == here.contact().expect("small strain").active
+    };
     if !down.iter().chain(&aside).all(same) {
         return Ok(None);
     }

@@ -256,8 +256,11 @@ pub fn compare(name: &str, contact: Contact) -> Measured {
             left.force[1] - right.force[1],
         ];
         let mirrored: Vec<[f64; 2]> = left.surface.iter().rev().map(|&[x, y]| [-x, y]).collect();
-        let moved = [&condensed.state.displacements, &mirrored]
-            .map(|displacements| difference(displacements, &right.surface));
+        let moved = [
+            &condensed.contact().expect("small strain").displacements,
+            &mirrored,
+        ]
+        .map(|displacements| difference(displacements, &right.surface));
         let what = format!("d = {} mm, x = {} mm", depth * 1e3, lateral * 1e3);
         let magnitude = |forces: [f64; 2]| largest(forces.map(f64::abs));
         figures.extend(figures! {

@@ -61,7 +61,7 @@ fn compare(model: &Model, depth: f64, curvature: f64) -> Measured<[f64; 3]> {
         lateral: 0.0,
     };
     let solution = model.solve(pose)?;
-    let (surface, state) = (model.surface(), &solution.state);
+    let (surface, state) = (model.surface(), solution.contact().expect("small strain"));
     let place = |point: usize| surface.positions[point][0] + state.displacements[point][0];
     let (mut force, mut moment) = (0.0, 0.0);
     for (point, [_, down]) in surface.forces(state, pose) {
@@ -88,6 +88,7 @@ fn compare(model: &Model, depth: f64, curvature: f64) -> Measured<[f64; 3]> {
 fn block() -> Result<Phantom, Refusal> {
     Phantom::new(PhantomParts {
         name: "block".into(),
+        strain: Default::default(),
         well: Well {
             width: 3.0 * HEIGHT,
             walls: Default::default(),
@@ -102,6 +103,7 @@ fn block() -> Result<Phantom, Refusal> {
         probe: Probe {
             radius: RADIUS,
             length: 1.0,
+            friction: 0.0,
         },
     })
 }

@@ -67,10 +67,7 @@ fn shape([r, s]: [f64; 2]) -> [f64; NODES] {
 
 /// A material of a Young's modulus, Pa, and Poisson's ratio.
 pub const fn material(youngs_modulus: f64, poisson_ratio: f64) -> Material {
-    Material {
-        youngs_modulus,
-        poisson_ratio,
-    }
+    Material::isotropic(youngs_modulus, poisson_ratio)
 }
 
 /// Lamé's constants (λ, μ), Pa: the checks' own, as Hooke's law below is.

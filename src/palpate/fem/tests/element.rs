@@ -8,10 +8,7 @@ use palpate_asserts::{assert_near, numbers_of};
 use super::builtin;
 
 /// E = 1, ν = ¼: λ = μ = 2/5.
-const QUARTER: Material = Material {
-    youngs_modulus: 1.0,
-    poisson_ratio: 0.25,
-};
+const QUARTER: Material = Material::isotropic(1.0, 0.25);
 
 fn assert_close(stiffness: &Stiffness, expected: impl Fn(usize, usize) -> f64, unknowns: usize) {
     for row in 0..unknowns {
@@ -49,10 +46,7 @@ fn stress_obeys_hooke() {
 
 /// Internal force at each node under the displacement `u`, with one material everywhere.
 fn internal_force(mesh: &Mesh, u: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<[f64; 2]> {
-    let material = Material {
-        youngs_modulus: 1.0,
-        poisson_ratio: 0.49,
-    };
+    let material = Material::isotropic(1.0, 0.49);
     let rule = StiffnessRule::default();
     let mut force = vec![[0.0; 2]; mesh.nodes.len()];
     for nodes in mesh.elements() {

@@ -53,10 +53,7 @@ fn hard(centre_x_mm: f64, depth_mm: f64, shape: Shape) -> Inclusion {
         centre_x: centre_x_mm * 1e-3,
         depth: depth_mm * 1e-3,
         shape,
-        material: Material {
-            youngs_modulus: 1.2e6,
-            poisson_ratio: 0.49,
-        },
+        material: Material::isotropic(1.2e6, 0.49),
     }
 }
 
@@ -67,7 +64,7 @@ fn with(inclusions: Vec<Inclusion>) -> Phantom {
 }
 
 /// The paper's disc, this far off the axis, mm.
-fn off_centre(depth_mm: f64, centre_x_mm: f64) -> Phantom {
+pub(in crate::fem) fn off_centre(depth_mm: f64, centre_x_mm: f64) -> Phantom {
     with(vec![hard(centre_x_mm, depth_mm, disc(6.4))])
 }
 
@@ -119,10 +116,7 @@ fn zoo() -> Vec<(String, Phantom)> {
     add("disc just under the skin", off_centre(0.6, 0.0));
     add("disc just above the floor", off_centre(8.95, 0.0));
     add("small disc", with(vec![hard(1.0, 5.0, disc(0.5))]));
-    let material = Material {
-        youngs_modulus: 20e3,
-        poisson_ratio: 0.45,
-    };
+    let material = Material::isotropic(20e3, 0.45);
     let fat = Layer {
         name: "fat".into(),
         thickness: 2e-3,

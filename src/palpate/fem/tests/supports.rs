@@ -56,10 +56,7 @@ fn a_shift_of_everything_costs_nothing() {
 fn a_slab_between_lubricated_walls_is_squeezed_as_a_column() {
     // Under a uniform pressure p each layer yields by p t/M with M = λ + 2μ, and nothing moves sideways.
     let held = held_by(builtin("none"), (Support::Sliding, Support::Sliding));
-    let soft = Material {
-        youngs_modulus: 2e3,
-        poisson_ratio: 0.3,
-    };
+    let soft = Material::isotropic(2e3, 0.3);
     let below = held.changed(|parts| {
         parts.layers.push(parts.layers[1].clone());
         parts.layers[2].material = soft;

@@ -22,10 +22,7 @@ pub fn stiffness(
         let wrong = format_args!("poissons_ratio is {poisson_ratio}, but {right}");
         return Err(Refused::range(wrong));
     }
-    let material = Material {
-        youngs_modulus,
-        poisson_ratio,
-    };
+    let material = Material::isotropic(youngs_modulus, poisson_ratio);
     let stiffness = StiffnessRule::default().integrate(nodes.as_chunks::<2>().0, &material);
     let stiffness = stiffness.map_err(not_positive)?;
     let rows = stiffness.row_iter();
