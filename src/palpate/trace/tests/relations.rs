@@ -66,7 +66,7 @@ impl Case {
             let mut places: Vec<usize> = (0..map.laterals().len()).collect();
             let at = |place: &usize| position(map.laterals()[*place]);
             places.sort_by(|a, b| at(a).total_cmp(&at(b)));
-            let of = map.forces().as_ref().zip(forces).map(|(of, factor)| {
+            let of = map.both().unwrap().zip(forces).map(|(of, factor)| {
                 Matrix::from_fn(of.row_count(), places.len(), |row, column| {
                     factor * of.row(row)[places[column]]
                 })
