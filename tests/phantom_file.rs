@@ -2,7 +2,7 @@
 
 mod any;
 
-use palpate::phantom::{BUILTIN_NAMES, Phantom, Shape, Strain, Support};
+use palpate::phantom::{BUILTIN_NAMES, Geometry, Phantom, PhantomParts, Shape, Strain, Support};
 use palpate_asserts::{assert_cases, changed};
 
 /// The example of `spec/phantom.md`, which is the built-in phantom `2.6`.
@@ -50,6 +50,23 @@ fn finite_strain_friction_and_fibres_are_read() {
         );
         assert_eq!(changed.number(key), Some(value));
     }
+    // Turned about its axis, it is as it was written, and has nothing off the axis.
+    let ball = phantom.changed(|parts| {
+        parts.geometry = Geometry::Axisymmetric;
+        parts.probe.length = 2.0 * parts.probe.radius;
+    });
+    let ball = ball.unwrap();
+    assert_eq!(read(&ball.to_toml()).as_ref(), Ok(&ball));
+    let off =
+        |of: &dyn Fn(&mut PhantomParts)| ball.changed(|parts| of(parts)).unwrap_err().to_string();
+    let beside = off(&|parts| parts.inclusions[0].centre_x = 1e-3);
+    assert!(
+        beside.starts_with("inclusion[0].centre_x_mm = 1.0, but must be "),
+        "{beside}"
+    );
+    let rough = off(&|parts| parts.probe.friction = 0.1);
+    assert!(rough.contains("no friction"), "{rough}");
+    assert!(ball.check_pose(1e-3, 0.0).is_ok() && ball.check_pose(1e-3, 1e-3).is_err());
     let upright = phantom.changed(|parts| parts.layers[1].material.fibre_angle_deg = 90.0);
     assert!(upright.unwrap().is_symmetric());
 }

@@ -98,6 +98,7 @@ fn phantom() -> impl Strategy<Value = Phantom> {
             let parts = PhantomParts {
                 name,
                 strain,
+                geometry: Default::default(),
                 well,
                 layers,
                 inclusions,

@@ -6,7 +6,7 @@ use super::FemError;
 use super::element::StiffnessRule;
 use super::mesh::Mesh;
 use super::ordering::dissection;
-use crate::phantom::Phantom;
+use crate::phantom::{Geometry, Phantom};
 use crate::refusal::Refusal;
 
 /// In place of the unknown of a displacement that is held.
@@ -54,12 +54,21 @@ impl StiffnessMatrix {
         let all = mesh.surface.iter().copied().map(number).last();
         let unknowns = all.unwrap_or(0);
         let rule = StiffnessRule::default();
+        // From one metre to the probe's length; what is turned has its whole stiffness already.
+        let length = match phantom.geometry() {
+            Geometry::Plane => phantom.probe().length,
+            Geometry::Axisymmetric => 1.0,
+        };
         let mut triplets = Vec::with_capacity(mesh.regions.len() * 78);
         let mut reaction = [vec![0.0; unknowns], vec![0.0; unknowns]];
         for (index, nodes) in mesh.elements().enumerate() {
             let positions = mesh.positions(nodes);
             let material = mesh.regions[index].material(phantom);
-            let stiffness = rule.integrate(&positions, material).map_err(|jacobian| {
+            let stiffness = match phantom.geometry() {
+                Geometry::Plane => rule.integrate(&positions, material),
+                Geometry::Axisymmetric => rule.integrate_revolved(&positions, material),
+            };
+            let stiffness = stiffness.map_err(|jacobian| {
                 let [x, y] = positions[0].map(|x| x * 1e3);
                 let found = format!(
                     "element {index} near x = {x:.3} mm, y = {y:.3} mm has the Jacobian {jacobian:e}: the mesh cannot follow this phantom; try a finer mesh"
@@ -70,8 +79,7 @@ impl StiffnessMatrix {
             for k in 0..2 * nodes.len() {
                 let column = row_of(k);
                 for l in 0..2 * nodes.len() {
-                    // From one metre to the probe's length.
-                    let value = phantom.probe().length * stiffness[(l, k)];
+                    let value = length * stiffness[(l, k)];
                     match row_of(l) {
                         _ if column == HELD => {}
                         HELD => reaction[l % 2][column as usize] += value,

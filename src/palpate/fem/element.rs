@@ -40,6 +40,28 @@ pub fn parent_gradients([r, s]: [f64; 2]) -> PerNode {
     ])
 }
 
+/// The shape functions at a point in parent coordinates.
+fn shapes([r, s]: [f64; 2]) -> [f64; NODES] {
+    let q = 1.0 - r - s;
+    let corner = |q: f64| q * (2.0 * q - 1.0);
+    [
+        corner(q),
+        corner(r),
+        corner(s),
+        4.0 * q * r,
+        4.0 * r * s,
+        4.0 * s * q,
+    ]
+}
+
+/// What a point of a revolved element needs beside the gradients: the way, m, on which it is turned, of which either half of the
+/// cross-section goes half a circle, and N_a/x, 1/m, by which displacements along x stretch that circle.
+pub(super) fn revolved(at: [f64; 2], positions: &[[f64; 2]]) -> (f64, [f64; NODES]) {
+    let shapes = shapes(at);
+    let x: f64 = positions.iter().zip(shapes).map(|(p, n)| n * p[0]).sum();
+    (std::f64::consts::PI * x.abs(), shapes.map(|n| n / x))
+}
+
 /// Gradients of the shape functions in space at one point of an element, and the Jacobian.
 #[derive(Debug, Clone, Copy)]
 pub struct Gradients {
@@ -87,9 +109,9 @@ pub fn stress(material: &Material, gradient: [[f64; 2]; 2]) -> [f64; 4] {
 }
 
 /// The quadrature of an element's stiffness, exact to degree 4, so that bent elements are integrated well too: Cowper's 6
-/// points. Parent gradients there, and weights.
+/// points: where they are, parent gradients there, and weights.
 #[derive(Debug, Clone)]
-pub struct StiffnessRule(Vec<(PerNode, f64)>);
+pub struct StiffnessRule(Vec<([f64; 2], PerNode, f64)>);
 
 /// Where its points lie on the medians, and their weights, which add up to the parent's area with three points each: ½.
 const COWPER: [(f64, f64); 2] = [
@@ -105,7 +127,7 @@ pub(super) fn quadrature() -> impl Iterator<Item = ([f64; 2], f64)> {
 
 impl Default for StiffnessRule {
     fn default() -> StiffnessRule {
-        let points = quadrature().map(|(at, weight)| (parent_gradients(at), weight));
+        let points = quadrature().map(|(at, weight)| (at, parent_gradients(at), weight));
         StiffnessRule(points.collect())
     }
 }
@@ -121,7 +143,7 @@ impl StiffnessRule {
         let (lambda, mu) = lame(material);
         let fibres = Vector2::from(material.fibre_direction());
         let mut stiffness = Stiffness::zeros();
-        for (parent, weight) in &self.0 {
+        for (_, parent, weight) in &self.0 {
             let g = gradients(parent, positions);
             // A NaN is refused as well.
             if g.jacobian.is_nan() || g.jacobian <= 0.0 {
@@ -140,6 +162,48 @@ impl StiffnessRule {
                         let both = material.fibre_modulus * ga.dot(&fibres) * gb.dot(&fibres);
                         block += both * fibres * fibres.transpose();
                     }
+                }
+            }
+        }
+        stiffness.fill_upper_triangle_with_lower_triangle();
+        Ok(stiffness)
+    }
+
+    /// Stiffness of an element that is turned about the axis x = 0, N/m, by half a turn: its mirror image is turned by the other.
+    /// Or the Jacobian that is not positive.
+    ///
+    /// With h_a = N_a/x and d_a = ∇N_a + h_a e_x, the block of nodes a, b is ∫ λ d_a d_bᵀ + μ ∇N_b ∇N_aᵀ + μ (∇N_a·∇N_b) I +
+    /// 2 μ h_a h_b e_x e_xᵀ, and fibres as in [`StiffnessRule::integrate`].
+    ///
+    /// Implements: FEM-081.
+    pub fn integrate_revolved(
+        &self,
+        positions: &[[f64; 2]],
+        material: &Material,
+    ) -> Result<Stiffness, f64> {
+        let (lambda, mu) = lame(material);
+        let fibres = Vector2::from(material.fibre_direction());
+        let mut stiffness = Stiffness::zeros();
+        for (at, parent, weight) in &self.0 {
+            let g = gradients(parent, positions);
+            // A NaN is refused as well.
+            if g.jacobian.is_nan() || g.jacobian <= 0.0 {
+                return Err(g.jacobian);
+            }
+            let (way, hoop) = revolved(*at, positions);
+            let volume = weight * g.jacobian * way;
+            for a in 0..NODES {
+                let (ga, ha) = (g.of_node.column(a), hoop[a] * Vector2::x());
+                for b in 0..=a {
+                    let (gb, hb) = (g.of_node.column(b), hoop[b] * Vector2::x());
+                    let along = material.fibre_modulus * ga.dot(&fibres) * gb.dot(&fibres);
+                    let of_pair = lambda * (ga + ha) * (gb + hb).transpose()
+                        + mu * gb * ga.transpose()
+                        + Matrix2::from_diagonal_element(mu * ga.dot(&gb))
+                        + 2.0 * mu * ha * hb.transpose()
+                        + along * fibres * fibres.transpose();
+                    let mut block = stiffness.fixed_view_mut::<2, 2>(2 * a, 2 * b);
+                    block += of_pair * volume;
                 }
             }
         }

@@ -3,9 +3,10 @@
 use super::FemError;
 use super::assembly::StiffnessMatrix;
 use super::cholesky::Factor;
-use super::element::{NODES, PerNode, SAMPLES, gradients, parent_gradients};
+use super::element::{NODES, PerNode, SAMPLES, gradients, parent_gradients, revolved};
 use super::mesh::Mesh;
 use super::size::SizeField;
+use crate::phantom::Geometry;
 
 /// How many poses are checked at once: the factor is read from memory once for all of them.
 pub(super) const BATCH: usize = 24;
@@ -36,6 +37,8 @@ pub struct Field {
 #[derive(Debug, Clone)]
 pub(super) struct SamplingPoint {
     shape: PerNode,
+    /// N_a/x, 1/m, where the point is turned about the axis.
+    hoop: Option<[f64; NODES]>,
     rows: [[u32; 2]; NODES],
     /// Whether it is too near to a sharp corner for its strain to mean anything.
     singular: bool,
@@ -46,6 +49,7 @@ pub(super) fn samples(
     mesh: &Mesh,
     matrix: &StiffnessMatrix,
     size: &SizeField,
+    geometry: Geometry,
 ) -> Vec<SamplingPoint> {
     let zeros = matrix.unknowns();
     let mut samples = Vec::with_capacity(mesh.regions.len() * SAMPLES.len());
@@ -58,6 +62,7 @@ pub(super) fn samples(
         }
         samples.extend(SAMPLES.map(|at| SamplingPoint {
             shape: gradients(&parent_gradients(at), &positions).of_node,
+            hoop: (geometry == Geometry::Axisymmetric).then(|| revolved(at, &positions).1),
             rows,
             singular: size.singular(positions[0].into()),
         }));
@@ -81,9 +86,17 @@ impl SamplingPoint {
         }
         gradient
     }
+
+    /// The stretch of the circle on which the point is turned, in field `w`; 1 in plane strain.
+    fn circle<const W: usize>(&self, u: &[[f64; W]], w: usize) -> f64 {
+        let hoop = self.hoop.iter().flatten().zip(&self.rows);
+        1.0 + hoop
+            .map(|(of, row)| of * u[row[0] as usize][w])
+            .sum::<f64>()
+    }
 }
 
-/// det(I + ∇u).
+/// det(I + ∇u) in the cross-section.
 pub(super) fn determinant(gradient: [[f64; 2]; 2]) -> f64 {
     (1.0 + gradient[0][0]) * (1.0 + gradient[1][1]) - gradient[0][1] * gradient[1][0]
 }
@@ -134,7 +147,8 @@ pub(super) fn check(
     for sample in samples.iter().filter(|sample| !sample.singular) {
         let [[xx, xy], [yx, yy]] = sample.gradient(&displacements);
         for w in 0..BATCH {
-            let det = determinant([[xx[w], xy[w]], [yx[w], yy[w]]]);
+            let det =
+                determinant([[xx[w], xy[w]], [yx[w], yy[w]]]) * sample.circle(&displacements, w);
             min_det[w] = if det < min_det[w] { det } else { min_det[w] };
         }
     }

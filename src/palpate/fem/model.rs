@@ -87,7 +87,8 @@ impl Model {
         let factor = Factor::new(&matrix)?;
         let compliance = factor.surface_compliance(&matrix)?;
         let surface = Surface::new(&mesh, &compliance, phantom.probe(), contact);
-        let samples = samples(&mesh, &matrix, &SizeField::new(phantom, mesh_size));
+        let size = SizeField::new(phantom, mesh_size);
+        let samples = samples(&mesh, &matrix, &size, phantom.geometry());
         let finite = match phantom.strain() {
             Strain::Small => None,
             Strain::Finite => {

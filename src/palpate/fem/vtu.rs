@@ -4,6 +4,8 @@ use super::element::{NODES, SAMPLES, stress};
 use super::field::determinant;
 use super::mesh::Region;
 use super::{FemError, Model, PoseSolution, State};
+use crate::phantom::Geometry;
+use crate::refusal::Refusal;
 
 /// VTK's type of cell.
 const QUADRATIC_TRIANGLE: u8 = 22;
@@ -19,6 +21,9 @@ impl Model {
     /// # Errors
     /// [`FemError::Residual`].
     pub fn vtu(&self, solution: &PoseSolution) -> Result<String, FemError> {
+        let found = "the stresses of an axisymmetric phantom cannot be written yet";
+        let is_revolved = self.phantom().geometry() == Geometry::Axisymmetric;
+        Refusal::state(found, "leave out the file for ParaView").when(is_revolved)?;
         let field = self.field(solution)?;
         let mesh = self.mesh();
         let (nodes, elements) = (mesh.nodes.len(), mesh.regions.len());

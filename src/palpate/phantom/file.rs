@@ -6,7 +6,8 @@ use std::path::Path;
 use serde::Deserialize;
 
 use super::{
-    Inclusion, Layer, Material, Phantom, PhantomParts, Probe, Shape, Strain, Support, Well,
+    Geometry, Inclusion, Layer, Material, Phantom, PhantomParts, Probe, Shape, Strain, Support,
+    Well,
 };
 use crate::decimal::{Kpa, Mm, Plain, Scaled, kpa, mm, plain};
 use crate::file::Tree;
@@ -19,6 +20,8 @@ struct PhantomFile {
     name: String,
     #[serde(default)]
     strain: Strain,
+    #[serde(default)]
+    geometry: Geometry,
     well: WellTable,
     layer: Vec<LayerTable>,
     #[serde(default)]
@@ -94,6 +97,7 @@ impl From<PhantomFile> for PhantomParts {
         PhantomParts {
             name: file.name,
             strain: file.strain,
+            geometry: file.geometry,
             well: Well {
                 width: file.well.width_mm.0,
                 walls: file.well.walls,
@@ -220,12 +224,15 @@ impl Phantom {
             floor,
         } = self.0.well;
         let (name, width) = (quoted(&self.0.name), mm(width));
-        let strain = match self.0.strain {
-            Strain::Small => String::new(),
-            strain => format!("strain = \"{strain}\"\n"),
-        };
+        let mut kind = String::new();
+        if self.0.strain != Strain::default() {
+            kind += &format!("strain = \"{}\"\n", self.0.strain);
+        }
+        if self.0.geometry != Geometry::default() {
+            kind += &format!("geometry = \"{}\"\n", self.0.geometry);
+        }
         let mut text = format!(
-            "name = {name}\n{strain}\n[well]\nwidth_mm = {width}\nwalls = \"{walls}\"\nfloor = \"{floor}\"\n"
+            "name = {name}\n{kind}\n[well]\nwidth_mm = {width}\nwalls = \"{walls}\"\nfloor = \"{floor}\"\n"
         );
         for layer in &self.0.layers {
             let (name, thickness) = (quoted(&layer.name), mm(layer.thickness));

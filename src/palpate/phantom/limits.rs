@@ -4,7 +4,7 @@ use std::ops::Bound::{Excluded, Included, Unbounded};
 use std::ops::{RangeBounds, RangeInclusive};
 
 use super::shape::{Point, contains, cross, dot, edges, extent, minus, point_to_segment};
-use super::{Inclusion, Material, Outline, Phantom, Shape, Strain, Support};
+use super::{Geometry, Inclusion, Material, Outline, Phantom, Shape, Strain, Support};
 use crate::decimal::{Scaled, kpa, mm, plain};
 use crate::refusal::Refusal;
 
@@ -65,6 +65,7 @@ impl Phantom {
         within("probe.radius_mm", mm(self.0.probe.radius), radii, why)?;
         let friction = plain(self.0.probe.friction);
         at_finite_strain("probe.friction", friction, self.0.strain, LARGEST_FRICTION)?;
+        self.check_revolution()?;
         check_count("inclusion", self.0.inclusions.len(), 0..=100)?;
         for (at, inclusion) in self.0.inclusions.iter().enumerate() {
             let key = format!("inclusion[{at}]");
@@ -73,6 +74,33 @@ impl Phantom {
             self.check_place(&key, inclusion)?;
         }
         check_distances(&self.0.inclusions)
+    }
+
+    /// Whether the cross-section can be turned about its axis.
+    ///
+    /// Implements: PHA-033.
+    fn check_revolution(&self) -> Check {
+        if self.0.geometry == Geometry::Plane {
+            return Ok(());
+        }
+        let (length, diameter) = (self.0.probe.length, to_picometre(2.0 * self.0.probe.radius));
+        let why = " (the diameter of the sphere that the probe of an axisymmetric phantom is)";
+        within("probe.length_mm", mm(length), diameter..=diameter, why)?;
+        for (at, inclusion) in self.0.inclusions.iter().enumerate() {
+            let (key, place) = (
+                format!("inclusion[{at}].centre_x_mm"),
+                mm(inclusion.centre_x),
+            );
+            within(
+                &key,
+                place,
+                0.0..=0.0,
+                " (the axis of an axisymmetric phantom)",
+            )?;
+        }
+        let found = "an axisymmetric phantom that is not its own mirror image";
+        let expected = "give inclusions that are, fibres along x or y, and no friction";
+        Refusal::state(found, expected).when(!self.is_symmetric())
     }
 
     fn check_supports(&self) -> Check {
@@ -157,6 +185,12 @@ pub(super) fn within<const POWER: i32>(
             Unbounded => String::new(),
         }
     };
+    if let (Included(one), Included(other)) = (range.start_bound(), range.end_bound())
+        && one == other
+    {
+        let only = Scaled::<POWER>(to_picometre(*one));
+        return refuse(key, value.to_string(), format!("{only}{why}"));
+    }
     let low = end(range.start_bound(), "at least", "above");
     let high = end(range.end_bound(), " and at most", " and below");
     refuse(key, value.to_string(), low + &high + why)

@@ -139,6 +139,32 @@ impl fmt::Display for Support {
     }
 }
 
+/// What the cross-section of a phantom stands for.
+///
+/// Implements: PHA-033.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Geometry {
+    /// Cylinders along the probe, which is one too.
+    #[default]
+    Plane,
+    /// Bodies of revolution about the axis x = 0, under a spherical probe.
+    Axisymmetric,
+}
+
+impl Geometry {
+    fn is_plane(&self) -> bool {
+        *self == Geometry::Plane
+    }
+}
+
+/// The word of a file.
+impl fmt::Display for Geometry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
+    }
+}
+
 /// The well that holds the layers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
@@ -183,14 +209,14 @@ pub struct Inclusion {
     pub material: Material,
 }
 
-/// The rigid, semicylindrical probe.
+/// The rigid probe: a semicylinder, or a sphere where the phantom is axisymmetric.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table")]
 pub struct Probe {
     /// Radius, m.
     #[serde(rename = "radius_m")]
     pub radius: f64,
-    /// Length along the cylinder, m: forces are totals over it.
+    /// Length along the cylinder, m: forces are totals over it. Of a sphere its diameter.
     #[serde(rename = "length_m")]
     pub length: f64,
     /// Coulomb's coefficient μ of friction between probe and surface.
@@ -209,6 +235,9 @@ pub struct PhantomParts {
     /// The theory that computes the forces.
     #[serde(default, skip_serializing_if = "Strain::is_small")]
     pub strain: Strain,
+    /// What the cross-section stands for.
+    #[serde(default, skip_serializing_if = "Geometry::is_plane")]
+    pub geometry: Geometry,
     /// The well.
     pub well: Well,
     /// The layers, top to bottom; the first one's top is the outer surface.
@@ -307,6 +336,11 @@ impl Phantom {
     /// The theory that computes the forces.
     pub fn strain(&self) -> Strain {
         self.0.strain
+    }
+
+    /// What the cross-section stands for.
+    pub fn geometry(&self) -> Geometry {
+        self.0.geometry
     }
 
     /// The well.

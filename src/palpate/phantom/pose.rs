@@ -3,7 +3,7 @@
 use std::ops::Bound::Excluded;
 
 use super::limits::{in_mm, within};
-use super::{Phantom, Probe};
+use super::{Geometry, Phantom, Probe};
 use crate::decimal::mm;
 use crate::refusal::Refusal;
 
@@ -29,6 +29,10 @@ impl Phantom {
     pub fn check_pose(&self, depth: f64, lateral: f64) -> Result<(), Refusal> {
         let why = " (the height of the layers)";
         within("depth_mm", mm(depth), 0.0..self.height(), why)?;
+        if self.0.geometry == Geometry::Axisymmetric {
+            let why = " (the axis of an axisymmetric phantom)";
+            within("lateral_mm", mm(lateral), 0.0..=0.0, why)?;
+        }
         let half_width = self.0.probe.half_width_at(depth);
         let limit = self.0.well.width / 2.0 - half_width;
         let (wide, low) = (in_mm(half_width), in_mm(depth));

@@ -89,6 +89,7 @@ fn block() -> Result<Phantom, Refusal> {
     Phantom::new(PhantomParts {
         name: "block".into(),
         strain: Default::default(),
+        geometry: Default::default(),
         well: Well {
             width: 3.0 * HEIGHT,
             walls: Default::default(),

@@ -6,8 +6,10 @@
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
-use crate::fem::element::{CORNERS, NODES, PerNode, gradients, lame, parent_gradients, quadrature};
-use crate::phantom::Material;
+use crate::fem::element::{
+    CORNERS, NODES, PerNode, gradients, lame, parent_gradients, quadrature, revolved,
+};
+use crate::phantom::{Geometry, Material, Phantom};
 
 /// Unknowns of an element: both displacements of each node, then the pressure at each corner.
 pub(super) const UNKNOWNS: usize = 2 * NODES + CORNERS;
@@ -45,22 +47,29 @@ impl From<&Material> for Law {
 pub(super) struct Point {
     /// ∂N_a/∂X, 1/m.
     gradients: PerNode,
+    /// N_a/X of a revolved element, 1/m; 0 in plane strain.
+    hoop: [f64; NODES],
     /// The pressure's shape functions.
     pressures: [f64; CORNERS],
     /// The volume that it stands for, m³.
     volume: f64,
 }
 
-/// The quadrature points of an element `length` metres long, or the Jacobian that is not positive.
-pub(super) fn points(positions: &[[f64; 2]], length: f64) -> Result<Vec<Point>, f64> {
+/// The quadrature points of an element of a `phantom`, or the Jacobian that is not positive.
+pub(super) fn points(positions: &[[f64; 2]], phantom: &Phantom) -> Result<Vec<Point>, f64> {
     let point = |([r, s], weight): ([f64; 2], f64)| {
         let g = gradients(&parent_gradients([r, s]), positions);
         // A NaN is refused as well.
         if g.jacobian.is_nan() || g.jacobian <= 0.0 {
             return Err(g.jacobian);
         }
+        let (length, hoop) = match phantom.geometry() {
+            Geometry::Plane => (phantom.probe().length, [0.0; NODES]),
+            Geometry::Axisymmetric => revolved([r, s], positions),
+        };
         Ok(Point {
             gradients: g.of_node,
+            hoop,
             pressures: [1.0 - r - s, r, s],
             volume: weight * g.jacobian * length,
         })
@@ -88,7 +97,9 @@ impl Law {
     ///
     /// With the spatial gradients g_a = F⁻ᵀ∇N_a, q_a = F∇N_a, f_a = ∇N_a·a, c = p − μ, m = μ + 4 C₂₀ (I₁ − 3) and
     /// t = E_f (I₄ − 1)/2, the force on node a is m q_a + t f_a F a + c g_a, and its derivative by the displacement of node b
-    /// (m ∇N_a·∇N_b + t f_a f_b) I + 8 C₂₀ q_a q_bᵀ + E_f f_a f_b (F a)(F a)ᵀ − c g_b g_aᵀ.
+    /// (m ∇N_a·∇N_b + t f_a f_b) I + 8 C₂₀ q_a q_bᵀ + E_f f_a f_b (F a)(F a)ᵀ − c g_b g_aᵀ. Turned about an axis, with h_a = N_a/X and
+    /// the stretch s of the circle, q_a grows by s h_a e_x, the g_a of the force by (h_a/s) e_x, and the derivative by
+    /// h_a h_b (m − c/s²) e_x e_xᵀ.
     pub(super) fn element(
         &self,
         points: &[Point],
@@ -103,14 +114,16 @@ impl Law {
         };
         for point in points {
             let gradient = Matrix2::identity() + displacements * point.gradients.transpose();
-            let det = gradient.determinant();
+            let along = (0..NODES).map(|a| point.hoop[a] * displacements[(0, a)]);
+            let hoop = 1.0 + along.sum::<f64>();
+            let det = gradient.determinant() * hoop;
             // A NaN is refused as well.
-            if det.is_nan() || det <= 0.0 {
+            if det.is_nan() || det <= 0.0 || hoop <= 0.0 {
                 return None;
             }
             element.least_det = element.least_det.min(det);
             let pressure = (0..CORNERS).map(|k| point.pressures[k] * state[2 * NODES + k]);
-            self.add(&mut element, point, &gradient, pressure.sum());
+            self.add(&mut element, point, (&gradient, hoop), pressure.sum());
         }
         for row in 0..UNKNOWNS {
             for column in 0..row {
@@ -137,18 +150,28 @@ impl Law {
     }
 
     /// Adds one point to the upper triangle of an element.
-    fn add(&self, element: &mut Element, point: &Point, gradient: &Matrix2<f64>, pressure: f64) {
+    fn add(
+        &self,
+        element: &mut Element,
+        point: &Point,
+        (gradient, hoop): (&Matrix2<f64>, f64),
+        pressure: f64,
+    ) {
         let Law {
             lambda, mu, c20, ..
         } = *self;
         let volume = point.volume;
-        let det = gradient.determinant();
         let [[xx, yx], [xy, yy]] = gradient.data.0;
-        let spatial = Matrix2::new(yy, -yx, -xy, xx) / det * point.gradients;
-        let moved = gradient * point.gradients;
+        let spatial = Matrix2::new(yy, -yx, -xy, xx) / gradient.determinant() * point.gradients;
+        // With the stretch of the circle that a point is turned on.
+        let (mut moved, mut dilation) = (gradient * point.gradients, spatial);
+        for (a, of) in point.hoop.iter().enumerate() {
+            moved[(0, a)] += hoop * of;
+            dilation[(0, a)] += of / hoop;
+        }
         let (along, stretched) = (point.gradients.tr_mul(&self.fibres), gradient * self.fibres);
-        let ln_det = libm::log(det);
-        let growth = gradient.norm_squared() - 2.0;
+        let ln_det = libm::log(gradient.determinant() * hoop);
+        let growth = gradient.norm_squared() + hoop * hoop - 3.0;
         let stretch = stretched.norm_squared() - 1.0;
         let isochoric = 0.5 * mu * (growth - 2.0 * ln_det) + c20 * growth * growth;
         let fibrous = self.fibre_modulus / 8.0 * stretch * stretch;
@@ -158,13 +181,10 @@ impl Law {
         let stiff = volume * (mu + 4.0 * c20 * growth);
         let tension = volume * self.fibre_modulus * stretch / 2.0;
         for b in 0..NODES {
-            let (of_b, spatial_b, moved_b) = (
-                point.gradients.column(b),
-                spatial.column(b),
-                moved.column(b),
-            );
+            let (of_b, spatial_b) = (point.gradients.column(b), spatial.column(b));
+            let (moved_b, dilation_b) = (moved.column(b), dilation.column(b));
             let force: Vector2<f64> =
-                moved_b * stiff + stretched * (tension * along[b]) + spatial_b * excess;
+                moved_b * stiff + stretched * (tension * along[b]) + dilation_b * excess;
             let mut rows = element.force.fixed_rows_mut::<2>(2 * b);
             rows += force;
             for a in 0..=b {
@@ -175,11 +195,13 @@ impl Law {
                     + moved.column(a) * (8.0 * volume * c20) * moved_b.transpose()
                     + stretched * (volume * self.fibre_modulus * both) * stretched.transpose()
                     - spatial_b * excess * spatial.column(a).transpose();
+                let circles = point.hoop[a] * point.hoop[b];
+                block[(0, 0)] += circles * (stiff - excess / (hoop * hoop));
             }
             for (k, shape) in point.pressures.iter().enumerate() {
                 let column = 2 * NODES + k;
                 let mut block = element.tangent.fixed_view_mut::<2, 1>(2 * b, column);
-                block += spatial_b * (shape * point.volume);
+                block += dilation_b * (shape * point.volume);
             }
         }
         for (k, shape) in point.pressures.iter().enumerate() {

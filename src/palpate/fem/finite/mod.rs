@@ -162,7 +162,7 @@ impl FiniteModel {
         checked.map_err(|refusal| FemError::Pose(refusal.into()))?;
         let (start, way) = (from.pose, distance(from.pose, to));
         let longest = STEP * self.phantom.probe().radius;
-        let parts = (way / longest - 1e-9).ceil().max(1.0);
+        let parts = libm::ceil(way / longest - 1e-9).max(1.0);
         let (mut reached, mut part) = (0.0, 1.0 / parts);
         let shortest = part / f64::from(1u32 << HALVINGS);
         let (mut now, mut before, mut iterations) = (from.clone(), earlier.cloned(), 0);

@@ -78,7 +78,7 @@ impl System {
         let numbering = Numbering::new(mesh);
         let mut elements = Vec::with_capacity(mesh.regions.len());
         for (nodes, &region) in mesh.elements().zip(&mesh.regions) {
-            let points = points(&mesh.positions(nodes), phantom.probe().length);
+            let points = points(&mesh.positions(nodes), phantom);
             let points = points.map_err(|_| {
                 let found = "an element is turned inside out: the mesh cannot follow this phantom; try a finer mesh";
                 Refusal::state(found, "")
