@@ -9,7 +9,7 @@ use crate::ROOT;
 use crate::program::{ASYMMETRIC, Place, contents, text};
 use palpate::fem::{Contact, Model};
 use palpate::force_map::ForceMap;
-use palpate::phantom::Phantom;
+use palpate::phantom::{Phantom, Strain};
 use palpate_asserts::assert_has;
 
 // Verifies: CLI-001.
@@ -78,6 +78,53 @@ fn solve_prints_the_librarys_map_by_either_contact_law() {
         let mut rows = table.lines().map(str::trim_start);
         let row = rows.find(|row| row.starts_with("3.0")).expect("3 mm");
         assert_eq!(row.split_whitespace().count(), 4, "{row}");
+    }
+}
+
+// Verifies: CLI-177, FIN-008, FIN-009, PHA-032.
+#[test]
+fn strain_and_friction_take_the_place_of_the_files() {
+    let here = Place::new("strain");
+    let arguments = "--depths-mm 2 --laterals-mm 1 --mesh-mm 2 --format json";
+    let solved = |phantom: &str, options: &str| {
+        let line = format!("solve --phantom {phantom} {arguments} {options}");
+        ForceMap::from_json(&here.succeed(&line), "standard output").unwrap()
+    };
+    let phantom = Phantom::builtin("6.6").unwrap().changed(|parts| {
+        parts.strain = Strain::Finite;
+        parts.probe.friction = 0.2;
+    });
+    fs::write(here.at("rough.toml"), phantom.unwrap().to_toml()).unwrap();
+    let rough = solved("rough.toml", "");
+    assert_eq!(rough, solved("6.6", "--strain finite --friction 0.2"));
+    let law = |map: &ForceMap| map.certificate().unwrap().law.is_some();
+    assert!(law(&rough));
+    // Each in the direction that physics gives it: the probe is held back by friction, and there is none without.
+    let smooth = solved("rough.toml", "--friction 0");
+    let small = solved("rough.toml", "--friction 0 --strain small");
+    assert!(law(&smooth) && !law(&small) && small == solved("6.6", ""));
+    let [rough, smooth, small] =
+        [rough, smooth, small].map(|map| map.table().row(2e-3).unwrap().map(|of| of[0]));
+    assert!(rough.lateral < smooth.lateral - 0.05 && smooth.normal > 1.1 * small.normal);
+    for (options, message) in [
+        (
+            "--friction 0.2",
+            "probe.friction = 0.2, but must be 0, or the phantom at strain = \"finite\"",
+        ),
+        ("--friction -1", "coefficient of friction of at least 0"),
+        ("--strain large", "invalid value 'large'"),
+        (
+            "--strain finite --contact vertical-gap",
+            "vertical-gap contact at finite strain",
+        ),
+        ("--strain finite --friction 1.9", "did not converge"),
+    ] {
+        let output = here.run(&format!("solve --phantom 6.6 {arguments} {options}"));
+        let told = text(&output.stderr);
+        assert!(
+            !output.status.success() && told.contains(message),
+            "{options}: {told}"
+        );
     }
 }
 
