@@ -49,6 +49,24 @@ fn run(place: &Place, threads: usize, line: &str) -> Output {
     command.output().unwrap()
 }
 
+// Verifies: CLI-178, CLI-177.
+#[test]
+fn a_bank_at_finite_strain_says_how_long_it_takes_and_has_its_law() {
+    let place = Place::new("bank-finite");
+    let line = "bank --phantom 6.6 --strain finite --offsets-mm=0,2 --depths-mm 6.6 --probe-depth-mm 2 --laterals-mm=-2:2:2 --mesh-mm 2";
+    let output = run(&place, 2, &format!("{line} --out bank.json"));
+    assert!(output.status.success(), "{output:?}");
+    let told = text(&output.stderr)
+        .strip_prefix("palpate: note: 3 maps of 3 poses at finite strain take some ");
+    let told = told.and_then(|told| told.strip_suffix(" s of processor time\n"));
+    // Nine poses on some 700 nodes.
+    let seconds: f64 = told.expect("a time").parse().unwrap();
+    assert!((0.1..1.0).contains(&seconds), "{seconds}");
+    let bank = Bank::from_json(&place.read("bank.json"), "bank.json").unwrap();
+    let has_law = |map: &ForceMap| map.certificate().unwrap().law.is_some();
+    assert!(has_law(bank.reference()) && bank.maps().iter().all(has_law));
+}
+
 // Verifies: CLI-154, CLI-159, CLI-007.
 #[test]
 fn the_bank_is_that_of_the_library_with_any_number_of_threads() {

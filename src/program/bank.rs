@@ -11,7 +11,7 @@ use super::CliError;
 use super::error::refuse;
 use super::numbers::{List, contact, length, moduli, positions};
 use super::output::{Envelope, write};
-use super::progress::{resumed_bar, tell_large_mesh};
+use super::progress::{resumed_bar, tell_large_mesh, tell_time};
 use super::solve::{TheoryArguments, phantom, tell_large_strain};
 use palpate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
 use palpate::decimal::{kpa, mm};
@@ -110,7 +110,11 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let phantom = arguments.theory.of(&phantom(&arguments.phantom)?)?;
     let plan = arguments.plan(&phantom)?;
     let solves = plan.solves()?;
-    tell_large_mesh(&phantom, plan.mesh_size).map_err(CliError::fem(phantom.name()))?;
+    let failed = CliError::fem(phantom.name());
+    tell_large_mesh(&phantom, plan.mesh_size).map_err(&failed)?;
+    // The reference is one more.
+    let work = [solves.len() + 1, arguments.laterals.len()];
+    tell_time(&phantom, plan.mesh_size, work).map_err(&failed)?;
     let (part, finished, bar) = open_part(&plan, arguments, &phantom, &solves)?;
     let mut maps = compute(&plan, phantom.name(), &solves, &part, finished, &bar)?;
     bar.finish_and_clear();
