@@ -53,13 +53,17 @@ pub struct Material {
     /// Poisson's ratio ν.
     pub poisson_ratio: f64,
     /// Yeoh's second coefficient C₂₀, Pa: how fast the material stiffens at finite strain.
-    #[serde(rename = "yeoh_c20_pa", default, skip_serializing_if = "is_zero")]
+    #[serde(rename = "yeoh_c20_pa", default, skip_serializing_if = "is_default")]
     pub yeoh_c20: f64,
     /// What fibres add to Young's modulus along them, Pa.
-    #[serde(rename = "fibre_modulus_pa", default, skip_serializing_if = "is_zero")]
+    #[serde(
+        rename = "fibre_modulus_pa",
+        default,
+        skip_serializing_if = "is_default"
+    )]
     pub fibre_modulus: f64,
     /// Angle from +x to the fibres, counter-clockwise.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub fibre_angle_deg: f64,
 }
 
@@ -87,8 +91,9 @@ impl Material {
     }
 }
 
-fn is_zero(number: &f64) -> bool {
-    *number == 0.0
+/// Whether a key need not be written.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 /// The theory that computes the forces.
@@ -102,12 +107,6 @@ pub enum Strain {
     Small,
     /// Finite strain.
     Finite,
-}
-
-impl Strain {
-    fn is_small(&self) -> bool {
-        *self == Strain::Small
-    }
 }
 
 /// The word of a file.
@@ -150,12 +149,6 @@ pub enum Geometry {
     Plane,
     /// Bodies of revolution about the axis x = 0, under a spherical probe.
     Axisymmetric,
-}
-
-impl Geometry {
-    fn is_plane(&self) -> bool {
-        *self == Geometry::Plane
-    }
 }
 
 /// The word of a file.
@@ -220,7 +213,7 @@ pub struct Probe {
     #[serde(rename = "length_m")]
     pub length: f64,
     /// Coulomb's coefficient μ of friction between probe and surface.
-    #[serde(default, skip_serializing_if = "is_zero")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub friction: f64,
 }
 
@@ -233,10 +226,10 @@ pub struct PhantomParts {
     /// A name for tables and figures.
     pub name: String,
     /// The theory that computes the forces.
-    #[serde(default, skip_serializing_if = "Strain::is_small")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub strain: Strain,
     /// What the cross-section stands for.
-    #[serde(default, skip_serializing_if = "Geometry::is_plane")]
+    #[serde(default, skip_serializing_if = "is_default")]
     pub geometry: Geometry,
     /// The well.
     pub well: Well,
