@@ -10,7 +10,7 @@ use crate::phantom::{Geometry, Phantom};
 use crate::refusal::Refusal;
 
 /// In place of the unknown of a displacement that is held.
-const HELD: u32 = u32::MAX;
+pub(super) const HELD: u32 = u32::MAX;
 
 /// Upper triangle of the stiffness matrix, N/m for the whole probe length. Its unknowns are the displacements that no wall or
 /// floor holds: those below the surface in the order of elimination, then those at the surface from left to right.

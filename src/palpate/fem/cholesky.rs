@@ -6,8 +6,11 @@ use std::sync::Arc;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::inverse::{inverse, inverse_scratch};
 use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
+use faer::sparse::linalg::cholesky::supernodal::{
+    SupernodalLltRef, SupernodeRef, SymbolicSupernodalCholesky,
+};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
@@ -36,6 +39,42 @@ pub(super) fn scratch(request: faer::dyn_stack::StackReq) -> Result<MemBuffer, F
     MemBuffer::try_new(request).map_err(|_| FemError::OutOfMemory)
 }
 
+/// The pattern of the factor, by supernodes, of a matrix with this upper triangle, whose unknowns stand in the order of elimination.
+pub(super) fn eliminated(
+    upper: SymbolicSparseColMatRef<'_, u32>,
+) -> Result<SymbolicCholesky<u32>, FemError> {
+    let params = CholeskySymbolicParams {
+        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+        ..Default::default()
+    };
+    // Without a permutation faer reads the upper triangle.
+    let identity = SymmetricOrdering::Identity;
+    let symbolic = factorize_symbolic_cholesky(upper, Side::Upper, identity, params);
+    symbolic.map_err(|_| FemError::OutOfMemory)
+}
+
+/// The corner of a factor from unknown `first` on, with what stands on its diagonal.
+pub(super) fn corner<'a>(
+    symbolic: &SymbolicSupernodalCholesky<u32>,
+    supernode: impl Fn(usize) -> SupernodeRef<'a, u32, f64>,
+    first: usize,
+) -> Mat<f64> {
+    let size = symbolic.nrows() - first;
+    let mut corner = Mat::zeros(size, size);
+    for s in 0..symbolic.n_supernodes() {
+        let supernode = supernode(s);
+        let (start, columns) = (supernode.start(), supernode.val());
+        let diagonal = (start..start + columns.ncols())
+            .chain(supernode.pattern().iter().map(|&row| row as usize));
+        for (i, row) in diagonal.enumerate() {
+            for j in first.max(start)..(row + 1).min(start + columns.ncols()) {
+                corner[(row - first, j - first)] = columns[(i, j - start)];
+            }
+        }
+    }
+    corner
+}
+
 impl Factor {
     /// Factorises the stiffness matrix.
     ///
@@ -44,18 +83,7 @@ impl Factor {
     /// # Errors
     /// [`FemError::Refused`] if it is not positive definite in double precision, [`FemError::OutOfMemory`].
     pub fn new(matrix: &StiffnessMatrix) -> Result<Factor, FemError> {
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-            ..Default::default()
-        };
-        // The unknowns stand in the order of elimination; without a permutation faer reads the upper triangle.
-        let symbolic = factorize_symbolic_cholesky(
-            matrix.upper.symbolic(),
-            Side::Upper,
-            SymmetricOrdering::Identity,
-            params,
-        )
-        .map_err(|_| FemError::OutOfMemory)?;
+        let symbolic = eliminated(matrix.upper.symbolic())?;
         let mut values = vec![0.0; symbolic.len_val()];
         let mut memory =
             scratch(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()))?;
@@ -78,7 +106,12 @@ impl Factor {
             values,
             surface: Mat::new(),
         };
-        factor.surface = factor.corner(matrix.first_surface_unknown);
+        let first = matrix.first_surface_unknown;
+        factor.surface = corner(
+            factor.factor().symbolic(),
+            |s| factor.factor().supernode(s),
+            first,
+        );
         Ok(factor)
     }
 
@@ -87,25 +120,6 @@ impl Factor {
             SymbolicCholeskyRaw::Supernodal(raw) => SupernodalLltRef::new(raw, &self.values),
             SymbolicCholeskyRaw::Simplicial(_) => unreachable!("supernodes were asked for"),
         }
-    }
-
-    /// The corner of L from unknown `first` on.
-    fn corner(&self, first: usize) -> Mat<f64> {
-        let factor = self.factor();
-        let size = factor.symbolic().nrows() - first;
-        let mut corner = Mat::zeros(size, size);
-        for s in 0..factor.symbolic().n_supernodes() {
-            let supernode = factor.supernode(s);
-            let (start, columns) = (supernode.start(), supernode.val());
-            let diagonal = (start..start + columns.ncols())
-                .chain(supernode.pattern().iter().map(|&row| row as usize));
-            for (i, row) in diagonal.enumerate() {
-                for j in first.max(start)..(row + 1).min(start + columns.ncols()) {
-                    corner[(row - first, j - first)] = columns[(i, j - start)];
-                }
-            }
-        }
-        corner
     }
 
     /// The surface compliance S⁻¹, m/N, with S = L_ss L_ssᵀ the stiffness with the interior condensed out, over both displacement components of each node at the surface from left to

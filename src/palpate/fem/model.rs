@@ -41,6 +41,7 @@ pub struct Model {
     pub(super) factor: Factor,
     surface: Surface,
     pub(super) samples: Vec<SamplingPoint>,
+    /// The gel at finite strain, where the phantom asks for it; what is of small strain then serves fields alone.
     pub(super) finite: Option<FiniteModel>,
 }
 

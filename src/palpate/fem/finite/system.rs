@@ -7,27 +7,21 @@ use std::sync::Arc;
 
 use faer::dyn_stack::MemStack;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
-use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLdltRef;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
+use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
 use faer::sparse::{Argsort, Pair, SparseColMat, SymbolicSparseColMat};
 use faer::{Conj, Mat, MatMut, Par, Side};
 use nalgebra::SVector;
 
 use super::law::{Law, Point, UNKNOWNS, points};
 use crate::fem::FemError;
-use crate::fem::cholesky::scratch;
+use crate::fem::assembly::HELD;
+use crate::fem::cholesky::{corner, eliminated, scratch};
 use crate::fem::element::{CORNERS, NODES};
 use crate::fem::mesh::{Mesh, Region};
 use crate::fem::ordering::dissection;
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
-
-/// In place of the unknown of a displacement that is held.
-const HELD: u32 = u32::MAX;
 
 /// The gel's elements and unknowns: displacements and pressures below the surface in the order of elimination, each pressure
 /// behind the displacements of its node; then the pressures at the surface; then the displacements at the surface from left to
@@ -93,17 +87,10 @@ impl System {
         let pairs: Vec<_> = pairs.collect();
         let (symbolic, argsort) = SymbolicSparseColMat::try_new_from_indices(size, size, &pairs)
             .map_err(|_| FemError::OutOfMemory)?;
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-            ..Default::default()
-        };
-        let identity = SymmetricOrdering::Identity;
-        let elimination =
-            factorize_symbolic_cholesky(symbolic.as_ref(), Side::Upper, identity, params);
         Ok(System {
             elements,
             argsort,
-            elimination: Arc::new(elimination.map_err(|_| FemError::OutOfMemory)?),
+            elimination: Arc::new(eliminated(symbolic.as_ref())?),
             symbolic,
             pressures: numbering.pressures.len(),
             displacements: numbering.displacements,
@@ -196,14 +183,13 @@ impl System {
             SparseColMat::new_from_argsort(self.symbolic.clone(), &self.argsort, &equations.values)
                 .map_err(|_| FemError::OutOfMemory)?;
         // The diagonal is the last entry of a column of the upper triangle.
+        let diagonal = |unknown: usize| self.symbolic.col_ptr()[unknown + 1] as usize - 1;
         let stiffest = under
             .clone()
-            .map(|k| *last(&tangent, k))
-            .fold(0.0, f64::max);
-        let columns = self.symbolic.col_ptr();
+            .map(|unknown| tangent.val()[diagonal(unknown)]);
+        let stiffest = stiffest.fold(0.0, f64::max);
         for unknown in under.clone() {
-            let diagonal = columns[unknown + 1] as usize - 1;
-            tangent.val_mut()[diagonal] += stiffest;
+            tangent.val_mut()[diagonal(unknown)] += stiffest;
         }
         let mut factor = vec![0.0; self.elimination.len_val()];
         let request = self
@@ -246,10 +232,6 @@ impl System {
     }
 }
 
-fn last(matrix: &SparseColMat<u32, f64>, column: usize) -> &f64 {
-    &matrix.val()[matrix.col_ptr()[column + 1] as usize - 1]
-}
-
 /// The entries of an element that stand in the upper triangle of the tangent.
 fn entries(unknowns: &[u32; UNKNOWNS]) -> impl Iterator<Item = (usize, usize)> {
     let all = (0..UNKNOWNS).flat_map(|a| (0..UNKNOWNS).map(move |b| (a, b)));
@@ -276,40 +258,22 @@ impl Condensed<'_> {
     /// The stiffness of the nodes under the probe with their support, the inverse of the corner of K⁻¹ = L⁻ᵀ D⁻¹ L⁻¹ over them;
     /// `None` where it is not positive definite.
     fn supported(&self) -> Option<Mat<f64>> {
-        let (corner, pivots) = self.corner(self.under.start);
+        let factor = self.ldlt();
+        // L with D in place of the ones on its diagonal.
+        let corner = corner(factor.symbolic(), |s| factor.supernode(s), self.under.start);
         let size = self.under.len();
         let one = |i, j| if i == j { 1.0 } else { 0.0 };
         let mut columns = Mat::from_fn(corner.nrows(), size, one);
         solve_unit_lower_triangular_in_place(corner.as_ref(), columns.as_mut(), Par::Seq);
-        let scaled = Mat::from_fn(corner.nrows(), size, |i, j| columns[(i, j)] / pivots[i]);
+        let scaled = Mat::from_fn(corner.nrows(), size, |i, j| {
+            columns[(i, j)] / corner[(i, i)]
+        });
         let compliance = columns.transpose() * scaled;
         let inverse = compliance.llt(Side::Lower).ok()?;
         let inverse = faer::linalg::solvers::DenseSolveCore::inverse(&inverse);
         Some(Mat::from_fn(size, size, |i, j| {
             0.5 * (inverse[(i, j)] + inverse[(j, i)])
         }))
-    }
-
-    /// The corner of L from unknown `first` on, and of D.
-    fn corner(&self, first: usize) -> (Mat<f64>, Vec<f64>) {
-        let factor = self.ldlt();
-        let size = factor.symbolic().nrows() - first;
-        let (mut corner, mut pivots) = (Mat::zeros(size, size), vec![1.0; size]);
-        for s in 0..factor.symbolic().n_supernodes() {
-            let supernode = factor.supernode(s);
-            let (start, columns) = (supernode.start(), supernode.val());
-            let own = start..start + columns.ncols();
-            let below = supernode.pattern().iter().map(|&row| row as usize);
-            for (i, row) in own.clone().chain(below).enumerate() {
-                for column in first.max(start)..row.min(own.end) {
-                    corner[(row - first, column - first)] = columns[(i, column - start)];
-                }
-                if own.contains(&row) && row >= first {
-                    pivots[row - first] = columns[(i, i)];
-                }
-            }
-        }
-        (corner, pivots)
     }
 
     /// The changes of all unknowns under `forces`, N, with the nodes under the probe supported.
