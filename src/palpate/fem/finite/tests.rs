@@ -5,7 +5,7 @@ use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 use super::law::{Law, UNKNOWNS, points};
 use super::system::System;
 use super::{Equilibrium, FiniteModel, Friction, Touch, crosses_itself};
-use crate::fem::element::{CORNERS, NODES, StiffnessRule};
+use crate::fem::element::{CORNERS, NODES, StiffnessRule, stress};
 use crate::fem::tests::off_centre;
 use crate::fem::{Contact, FemError, Mesh, Model, Pose, State};
 use crate::phantom::{Geometry, Material, Phantom, Strain};
@@ -268,8 +268,14 @@ fn fibres_stiffen_small_and_finite_strain_alike() {
     });
     let added: SMatrix<f64, 12, 12> = with - without;
     assert!((added - (stiff - bare)).amax() < 1e-12 * with.amax());
-    // Stretched along the fibres by ε, V E_f ε²/2 more energy.
+    // Stretched along the fibres by ε, V E_f ε²/2 more energy, and E_f ε more stress along them.
     let [a, b] = fibrous.fibre_direction();
+    let stretched = [[1e-3 * a * a, 1e-3 * a * b], [1e-3 * a * b, 1e-3 * b * b]];
+    let [with, without] = [fibrous, plain].map(|material| stress(&material, stretched));
+    for (k, part) in [a * a, b * b, 0.0, a * b].into_iter().enumerate() {
+        let expected = 1e-3 * fibrous.fibre_modulus * part;
+        assert_near(with[k] - without[k], expected, 1e-12 * with[0].abs());
+    }
     let along = SVector::<f64, 12>::from_fn(|k, _| {
         let [x, y] = BENT[k / 2];
         1e-3 * (a * x + b * y) * [a, b][k % 2]
@@ -535,6 +541,29 @@ fn a_tangent_with_other_pivots_is_refused() {
             .unwrap()
             .is_none()
     );
+    // Only at the corners of one element near the floor, far from the probe, whose own stiffness stays positive.
+    let depth = |nodes: &[u32]| {
+        mesh.positions(&nodes[..CORNERS])
+            .iter()
+            .map(|p| p[1])
+            .sum::<f64>()
+    };
+    let deepest = mesh
+        .elements()
+        .enumerate()
+        .min_by(|a, b| depth(a.1).total_cmp(&depth(b.1)));
+    let deepest = deepest.unwrap().0;
+    let mut state = vec![0.0; system.unknowns()];
+    for &pressure in &system.pressure_unknowns()[CORNERS * deepest..][..CORNERS] {
+        state[pressure] = -1e7;
+    }
+    let pressed = system.equations(&state).unwrap();
+    assert!(
+        system
+            .condense(&pressed, first..first + 2)
+            .unwrap()
+            .is_none()
+    );
 }
 
 // Verifies: FIN-007.
@@ -706,4 +735,97 @@ fn a_sphere_on_a_layer_has_the_force_of_theory() {
         (small - finite).abs() < 0.005 && small < vertical - 0.01,
         "{small} {finite}"
     );
+}
+
+// Verifies: FIN-007.
+#[test]
+fn each_guard_refuses_a_solution_by_itself() {
+    let model = coarse(&builtin("none"), Friction::None);
+    let solved = at(&model, &[[1.0, 0.0]]);
+    let accept = |pose: Pose, state: &[f64], least_det: f64, forces: Vec<[f64; 2]>| {
+        let mut equations = model.system.equations(&solved.state).unwrap();
+        equations.least_det = least_det;
+        let touches = solved.touches.clone();
+        model.accept(pose, state.to_vec(), &equations, touches, forces, 1)
+    };
+    let forces = || solved.forces.clone();
+    assert!(accept(solved.pose, &solved.state, 0.9, forces()).is_some());
+    assert!(accept(solved.pose, &solved.state, 0.04, forces()).is_none());
+    // The probe a tenth of a millimetre deeper, the gel as before.
+    assert!(accept(pose(1.1, 0.0), &solved.state, 0.9, forces()).is_none());
+    // Two nodes far from the probe, carried beyond the next one, one above the surface and one below it.
+    let mut folded = solved.state.clone();
+    let place = |at: usize| model.mesh.nodes[model.mesh.surface[at]][0];
+    for (at, height) in [(2, 0.1e-3), (3, -0.1e-3)] {
+        let node = model.mesh.surface[at];
+        let [x, y] = [0, 1].map(|k| model.system.unknown(node, k).unwrap());
+        (folded[x], folded[y]) = (0.5 * (place(4) + place(5)) - place(at), height);
+    }
+    assert!(accept(solved.pose, &folded, 0.9, forces()).is_none());
+    // Half the contact's force leaves half the reaction of floor and walls.
+    let half = forces().iter().map(|f| f.map(|f| 0.5 * f)).collect();
+    let half = accept(solved.pose, &solved.state, 0.9, half).unwrap();
+    assert_near(half.check.imbalance, 0.5 * solved.force.normal, 1e-9);
+}
+
+// Verifies: FIN-008.
+#[test]
+fn iterations_of_all_steps_are_counted() {
+    let model = coarse(&builtin("none"), Friction::None);
+    let steps = path(&model, &[[1.0, 0.0], [2.0, 0.0]]);
+    let at_once = at(&model, &[[2.0, 0.0]]);
+    assert_eq!(
+        at_once.iterations,
+        steps[0].iterations + steps[1].iterations
+    );
+}
+
+// Verifies: FEM-081, FEM-013.
+#[test]
+fn what_is_nearly_incompressible_keeps_its_volume_when_turned() {
+    let gel = sphere(3e-3, 6e-3).changed(|parts| parts.layers[0].material.poisson_ratio = 0.4995);
+    let model = Model::new(&gel.unwrap(), 1e-3, Contact::default()).unwrap();
+    let solution = model.solve(pose(0.1, 0.0)).unwrap();
+    let det = model.checks(&[solution]).unwrap()[0].min_det;
+    // Strains are some hundredths: their squares change a volume by some thousandths, in the cross-section alone the strain itself does.
+    assert!((0.985..1.0).contains(&det), "{det}");
+}
+
+// Verifies: FEM-016, FIN-001.
+#[test]
+fn the_stress_under_the_probe_is_its_pressure() {
+    let block = builtin("none").changed(|parts| {
+        parts.layers.remove(0);
+    });
+    let model = Model::new(&block.unwrap(), 1e-3, Contact::default()).unwrap();
+    let solution = model.solve(pose(2.0, 0.0)).unwrap();
+    let State::Finite(rest) = &solution.state else {
+        panic!("finite strain")
+    };
+    let touching = model.mesh().surface.iter().zip(&rest.touches);
+    let touching = touching.filter(|(_, touch)| **touch != Touch::Apart);
+    let x = touching.map(|(&node, _)| model.mesh().nodes[node][0] + rest.displacements[node][0]);
+    let (low, high) = x.fold((0.0f64, 0.0f64), |(a, b), x| (a.min(x), b.max(x)));
+    // Hertz's pressure in the middle is 4/π of its mean; that of a layer at finite strain is between the mean and a parabola's 3/2.
+    let mean = solution.force.normal / ((high - low) * 0.03);
+    let text = model.vtu(&solution).unwrap();
+    let stresses = text
+        .split("Name=\"stress_xx_yy_zz_xy_pa\"")
+        .nth(1)
+        .unwrap()
+        .lines()
+        .skip(1);
+    let of_middle = model.mesh().elements().zip(stresses).filter(|(nodes, _)| {
+        let corners = model.mesh().positions(&nodes[..CORNERS]);
+        corners
+            .iter()
+            .all(|[x, y]| x.abs() < 0.8e-3 && *y > -0.6e-3)
+    });
+    let normal =
+        of_middle.map(|(_, line)| -line.split(' ').nth(1).unwrap().parse::<f64>().unwrap());
+    let normal: Vec<f64> = normal.collect();
+    assert!(!normal.is_empty());
+    for stress in normal {
+        assert!((1.0..1.5).contains(&(stress / mean)), "{stress} of {mean}");
+    }
 }
