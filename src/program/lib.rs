@@ -28,6 +28,7 @@ mod reach;
 mod run;
 mod solve;
 mod study;
+mod theories;
 mod timing;
 
 use std::ffi::OsString;

@@ -11,6 +11,7 @@ use super::config::Config;
 use super::output::{make_folder, note, print, write};
 use super::progress::{bar, tell_large_mesh};
 use super::solve::{TheoryArguments, tell_large_strain};
+use super::theories;
 use palpate::csv::Layout;
 use palpate::fem::certify::certified_map;
 use palpate::fem::{FemError, Model, Pose};
@@ -31,6 +32,9 @@ pub struct RunArguments {
     config: Option<PathBuf>,
     #[command(flatten)]
     theory: TheoryArguments,
+    /// Compares small strain, finite strain and friction in the report; takes some minutes
+    #[arg(long)]
+    compare_theories: bool,
     /// Results of 'palpate study merge' for the same phantoms, to include in the report
     #[arg(long, value_name = "FILE")]
     study: Option<PathBuf>,
@@ -58,6 +62,11 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     // The folder first: a run shall not fail at its end because it cannot be made.
     make_folder(&arguments.out)?;
     let (mut maps, deformed) = solve_all(&config, &phantoms)?;
+    let theories = if arguments.compare_theories {
+        theories::compare(&config, &phantoms)?
+    } else {
+        Vec::new()
+    };
     let reference = maps.remove(0);
     let (depth, _) = probe_depth(reference.table().depths());
     let changes = GelChanges::new(&reference, depth, &GelUncertainty::default());
@@ -69,6 +78,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
         deformed,
         settings: config.detection,
         study,
+        theories,
     };
     let name = |map: &ForceMap| map.phantom().map_or("", Phantom::name).to_string();
     let strains = run.reference_and_maps();
@@ -108,8 +118,7 @@ fn solve_all(
     phantoms: &[Phantom],
 ) -> Result<(Vec<ForceMap>, DeformedMesh), CliError> {
     let bar = bar(0, "force maps");
-    // The figure shows the first inclusion, or the reference where there is none.
-    let shown = usize::from(phantoms.len() > 1);
+    let shown = shown(phantoms);
     let solve = |(index, phantom): (usize, &Phantom)| {
         solve_phantom(config, phantom, index == shown, &bar).map_err(CliError::fem(phantom.name()))
     };
@@ -140,8 +149,13 @@ fn solve_phantom(
     Ok((map, deformed))
 }
 
+/// The place of the phantom that the deformed mesh shows: that of the first inclusion, or the reference where there is none.
+pub fn shown(phantoms: &[Phantom]) -> usize {
+    usize::from(phantoms.len() > 1)
+}
+
 /// The mesh at the deepest pose, at the lateral position nearest to the middle of the first inclusion, or to x = 0.
-fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
+pub fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
     let depth = map.table().depths().iter().fold(0.0, |a: f64, &b| a.max(b));
     let first = model.phantom().inclusions().first();
     let [left, right, ..] = first.map_or([0.0; 4], Inclusion::extent);

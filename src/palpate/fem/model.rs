@@ -5,7 +5,7 @@ use super::cholesky::{Factor, check_residual};
 use super::contact::{Contact, ContactState, Surface};
 use super::element::SAMPLES;
 use super::field::{BATCH, Field, FieldCheck, SamplingPoint, check, samples};
-use super::finite::{Equilibrium, FiniteModel, Friction, LAW};
+use super::finite::{Equilibrium, FiniteModel, Friction, law_of};
 use super::mesh::Mesh;
 use super::size::SizeField;
 use super::{FemError, Pose, arithmetic};
@@ -455,7 +455,7 @@ impl Model {
             arithmetic: arithmetic().into(),
             smallest_det,
             min_det,
-            law: self.finite.as_ref().map(|_| LAW.into()),
+            law: self.finite.as_ref().map(|_| law_of(&self.phantom)),
             discretization: None,
         })
     }

@@ -7,6 +7,7 @@ use super::inputs;
 use super::maps::{MapFindings, ReferenceFindings, gamma, of_map, of_reference};
 use super::people::bridge_to;
 use super::text::{millimetres, name_of_map};
+use super::theories::{self, TheoryFindings};
 use super::{Run, Settings, paper};
 use crate::psychophysics::bridge::{Bridge, probe_depth};
 use crate::psychophysics::{
@@ -39,6 +40,9 @@ pub struct Findings {
     pub bridge: Option<Bridge>,
     /// Each number that the paper prints beside ours.
     pub comparison: Vec<Comparison>,
+    /// The same phantoms under several theories of the gel.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub theories: Vec<TheoryFindings>,
 }
 
 /// Everything that the report says in numbers.
@@ -59,7 +63,9 @@ pub fn findings(run: &Run) -> Result<Findings, Refusal> {
         let found = format!("map {name:?} is among the measured maps, but was computed");
         return Err(Refusal::state(found, ""));
     }
-    let judged = run.maps.iter().map(|map| of_map(run, map, probe_depth));
+    let (reference, settings) = (&run.reference, &run.settings);
+    let judged = run.maps.iter();
+    let judged = judged.map(|map| of_map(reference, settings, map, probe_depth));
     let maps = judged.collect::<Result<Vec<_>, _>>()?;
     let reference = of_reference(&run.reference, probe_depth)?;
     let is_paper_reference = run.reference.phantom().and_then(paper::name_of) == Some("none");
@@ -82,6 +88,7 @@ pub fn findings(run: &Run) -> Result<Findings, Refusal> {
         }),
         samples: run.reference.table().laterals().len(),
         required_gamma,
+        theories: theories::findings(&run.theories, settings)?,
         comparison: comparison.map_err(Refusal::because("the paper's numbers"))?,
         reference,
         maps,

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::nuisances::GammaLeft;
 use super::quality::{Quality, warnings};
 use super::text::name_of_map;
-use super::{Run, Settings, paper};
+use super::{Settings, paper};
 use palpate::detect::{
     DetectError, ErrorRates, MatchedFilter, error_rates, map_threshold,
     neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, two_afc,
@@ -143,18 +143,28 @@ pub(super) fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindin
 }
 
 /// F_1 − F_0 of a map at one depth.
-pub(super) fn signal(run: &Run, map: &ForceMap, depth: f64) -> Result<Force<Vec<f64>>, Refusal> {
-    let signal = map.signal(&run.reference).map_err(incomparable(map))?;
+pub(super) fn signal(
+    reference: &ForceMap,
+    map: &ForceMap,
+    depth: f64,
+) -> Result<Force<Vec<f64>>, Refusal> {
+    let signal = map.signal(reference).map_err(incomparable(map))?;
     let row = signal.row(depth).map_err(incomparable(map))?;
     Ok(row.map(<[f64]>::to_vec))
 }
 
 /// Implements: REP-012.
-pub(super) fn of_map(run: &Run, map: &ForceMap, depth: f64) -> Result<MapFindings, Refusal> {
-    let signal = signal(run, map, depth)?;
+pub(super) fn of_map(
+    reference: &ForceMap,
+    settings: &Settings,
+    map: &ForceMap,
+    depth: f64,
+) -> Result<MapFindings, Refusal> {
+    let signal = signal(reference, map, depth)?;
     let signal = signal.as_deref();
-    let gamma_left = GammaLeft::of(run, signal, depth).map_err(incomparable(map))?;
-    let judged = judged(&run.settings, signal);
+    let gamma_left = GammaLeft::of(reference, settings.noise_sd_n, signal, depth);
+    let gamma_left = gamma_left.map_err(incomparable(map))?;
+    let judged = judged(settings, signal);
     let name = name_of_map(map);
     let (gamma, detection) = judged.map_err(Refusal::because(format!("map {name:?}")))?;
     let (quality, phantom) = (Quality::of(map), map.phantom());

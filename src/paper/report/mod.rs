@@ -11,6 +11,7 @@
 //! | `nuisances.rs` | what is left of γ where more is unknown than the noise |
 //! | `findings.rs` | what the run found, all together |
 //! | `inputs.rs` | what a study says of the inputs' uncertainty |
+//! | `theories.rs` | what finite strain and friction change |
 //! | `people.rs` | the subjects of Table 1, and the bridge from forces to their answers |
 //! | `quality.rs` | certificates in short, warnings |
 //! | `comparison.rs` | "paper, here, why" |
@@ -36,6 +37,7 @@
 //!     deformed: DeformedMesh::solve(&inclusion, Pose { depth: 4e-3, lateral: 0.0 })?,
 //!     settings: Settings::default(),
 //!     study: None,
+//!     theories: vec![],
 //! };
 //! let findings = findings(&run)?;
 //! assert!(findings.maps[0].gamma.both > 1.0);
@@ -59,6 +61,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 pub mod text;
+mod theories;
 
 pub use comparison::{Comparison, Value};
 pub use figures::figures;
@@ -70,6 +73,7 @@ use people::normal_approximation;
 pub use quality::Quality;
 pub use summary::summary_json;
 pub use text::FileNames;
+pub use theories::{Explanation, TemplateUse, TheoryFindings};
 
 pub use crate::settings::Settings;
 use crate::study::StudyResults;
@@ -100,6 +104,21 @@ pub struct Run {
     pub settings: Settings,
     /// A study of the same phantoms at the depth of the bridge: what their inputs' uncertainty does to the numbers.
     pub study: Option<StudyResults>,
+    /// The same phantoms under several theories of the gel, to be compared; none if they are not.
+    pub theories: Vec<Theory>,
+}
+
+/// The phantoms of a run under one theory of the gel.
+#[derive(Debug, Clone)]
+pub struct Theory {
+    /// Reference map of the phantom without inclusion.
+    pub reference: ForceMap,
+    /// Maps of the phantoms with inclusion, over the same poses.
+    pub maps: Vec<ForceMap>,
+    /// The deformed mesh of one pose.
+    pub deformed: DeformedMesh,
+    /// d ln F_n / d ln ν of the normal force without inclusion at the probe depth and x = 0.
+    pub poisson_leverage: f64,
 }
 
 impl Run {
@@ -154,6 +173,8 @@ pub enum Topic {
     Forces,
     /// The detector.
     Detection,
+    /// Small and finite strain.
+    Theories,
     /// What uncertain inputs do.
     Inputs,
     /// The subjects of the paper.

@@ -50,6 +50,9 @@ impl Serialize for Quality {
         map.serialize_entry("nodes", &of.nodes)?;
         map.serialize_entry("element", &of.element)?;
         map.serialize_entry("contact", &of.contact)?;
+        if let Some(law) = &of.law {
+            map.serialize_entry("law", law)?;
+        }
         map.serialize_entry("program_version", &self.program_version)?;
         map.end()
     }
@@ -58,7 +61,9 @@ impl Serialize for Quality {
 /// Implements: REP-015.
 pub(super) fn warnings(quality: Option<&Quality>, gamma: f64) -> Vec<String> {
     let mut warnings = Vec::new();
-    let smallest = quality.map(|quality| quality.certificate.smallest_det);
+    let small = quality.map(|quality| &quality.certificate);
+    let small = small.filter(|of| of.law.is_none());
+    let smallest = small.map(|certificate| certificate.smallest_det);
     if let Some(smallest) = smallest.filter(|of| of.det < SMALL_STRAIN_LIMIT) {
         warnings.push(format!(
             "Small strain is at its limit: det(I + ∇u) falls to {:.3} at depth {} mm, x = {} mm (below {SMALL_STRAIN_LIMIT}); forces near that pose are the linear model's, not a real gel's.",

@@ -10,6 +10,7 @@ mod page;
 mod pictures;
 mod run;
 pub mod table_1;
+mod theories;
 
 use super::*;
 use palpate::phantom::{PhantomParts, Support};

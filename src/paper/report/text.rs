@@ -78,6 +78,11 @@ pub(super) fn range(axis: &[f64]) -> String {
     }
 }
 
+/// A force in N.
+pub(super) fn newtons(force: f64) -> String {
+    fixed(force, 3)
+}
+
 /// A force (N) in mN.
 pub(super) fn millinewtons(force: impl Borrow<f64>) -> String {
     trimmed(1e3 * force.borrow(), 1)

@@ -14,8 +14,23 @@ use crate::phantom::{Geometry, Material, Phantom};
 /// Unknowns of an element: both displacements of each node, then the pressure at each corner.
 pub(super) const UNKNOWNS: usize = 2 * NODES + CORNERS;
 
-/// The name of the law, for every output.
-pub const NAME: &str = "neo-Hookean (Bonet and Wood)";
+/// The name of the law of a phantom's materials, for every output.
+///
+/// Implements: FIN-008.
+pub fn name(phantom: &Phantom) -> String {
+    let inclusions = phantom.inclusions().iter().map(|of| of.material);
+    let materials = phantom.layers().iter().map(|of| of.material);
+    let materials: Vec<Material> = materials.chain(inclusions).collect();
+    let has = |modulus: fn(&Material) -> f64| materials.iter().any(|of| modulus(of) != 0.0);
+    [
+        (true, "neo-Hookean (Bonet and Wood)"),
+        (has(|of| of.yeoh_c20), ", Yeoh's second term"),
+        (has(|of| of.fibre_modulus), ", fibres"),
+    ]
+    .into_iter()
+    .map(|(is_there, part)| if is_there { part } else { "" })
+    .collect()
+}
 
 /// The constants of a law, Pa.
 ///

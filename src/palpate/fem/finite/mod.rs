@@ -26,7 +26,7 @@ use crate::force::Force;
 use crate::phantom::Phantom;
 
 pub use contact::{Friction, Touch};
-pub use law::NAME as LAW;
+pub use law::name as law_of;
 
 /// Longest way from one pose to the next, over the probe's radius.
 const STEP: f64 = 0.16;

@@ -45,7 +45,11 @@ pub fn figures(run: &Run, found: &Findings) -> Result<Vec<Plan>, Refusal> {
 }
 
 /// A panel of the normal force, or of its signal, over one of the lateral one. One position alone gets some room.
-fn panels(laterals: &[f64], headings: [&str; 2], [normal, lateral]: [Vec<Line>; 2]) -> [Panel; 2] {
+pub fn panels(
+    laterals: &[f64],
+    headings: [&str; 2],
+    [normal, lateral]: [Vec<Line>; 2],
+) -> [Panel; 2] {
     let x = match laterals {
         [first, .., last] => [first * 1e3, last * 1e3],
         [only] => [only * 1e3 - 1.0, only * 1e3 + 1.0],
@@ -63,7 +67,7 @@ fn panels(laterals: &[f64], headings: [&str; 2], [normal, lateral]: [Vec<Line>; 
 }
 
 /// Positions (m) in mm, and forces, as points.
-fn points(laterals: &[f64], forces: &[f64]) -> Vec<(f64, f64)> {
+pub fn points(laterals: &[f64], forces: &[f64]) -> Vec<(f64, f64)> {
     let laterals = laterals.iter().map(|x| x * 1e3);
     laterals.zip(forces.iter().copied()).collect()
 }
@@ -125,7 +129,7 @@ fn signals(run: &Run, found: &Findings) -> Result<[Panel; 2], Refusal> {
     let laterals = run.reference.table().laterals();
     let mut lines = [Vec::new(), Vec::new()];
     for (k, (map, of_map)) in run.maps.iter().zip(&found.maps).enumerate() {
-        let signal = signal(run, map, found.probe_depth_m)?;
+        let signal = signal(&run.reference, map, found.probe_depth_m)?;
         for (lines, forces) in lines.iter_mut().zip([signal.normal, signal.lateral]) {
             let line = Line::nth(k, &PALETTE, points(laterals, &forces));
             lines.push(line.named(label(of_map)));

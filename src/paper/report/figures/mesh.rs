@@ -4,17 +4,34 @@ use std::collections::BTreeMap;
 
 use plotters::style::RGBColor;
 
-use super::plan::{Plan, Words, over};
+use super::plan::{Picture, Plan, Words, over};
 use super::setup::{INCLUSION, PROBE, layer_key, probe, tint};
 use crate::report::text::{fixed, millimetres};
 use crate::report::{DeformedMesh, Topic, paper};
 use palpate::chart::{Cells, Line, Panel, to_mm};
+use palpate::fem::finite::LEAST_DET;
+use palpate::phantom::Strain;
 
 /// The sides of elements.
 const EDGE: RGBColor = RGBColor(0x5B, 0x64, 0x70);
 
-/// Figure 6: the mesh to scale, with straight sides between the corners of its elements.
-pub fn figure(mesh: &DeformedMesh) -> Plan {
+/// Figure 6.
+pub fn figure_6(mesh: &DeformedMesh) -> Plan {
+    let pose = "paper's Figure 6, whose pose is not stated";
+    let words = words(mesh, "Figure 6. Deformed mesh", pose);
+    Plan::new("figure-6", Topic::Setup, words, picture(mesh))
+}
+
+/// The same mesh at finite strain.
+///
+/// Implements: REP-092.
+pub fn figure_at_finite_strain(mesh: &DeformedMesh) -> Plan {
+    let words = words(mesh, "Deformed mesh at finite strain", "as in Figure 6");
+    Plan::new("deformed-finite", Topic::Theories, words, picture(mesh))
+}
+
+/// The mesh to scale, with straight sides between the corners of its elements.
+fn picture(mesh: &DeformedMesh) -> Picture {
     let phantom = &mesh.phantom;
     let mut regions: BTreeMap<_, Vec<_>> = BTreeMap::new();
     for (region, corners) in &mesh.elements {
@@ -36,17 +53,20 @@ pub fn figure(mesh: &DeformedMesh) -> Plan {
         1 => Some(sample(INCLUSION, "inclusion")),
         _ => Some(sample(INCLUSION, "inclusions")),
     });
-    let picture = over("Lateral position x (mm)", [panel]);
-    Plan::new("figure-6", Topic::Setup, words(mesh), picture)
+    over("Lateral position x (mm)", [panel])
 }
 
-fn words(mesh: &DeformedMesh) -> Words {
+fn words(mesh: &DeformedMesh, title: &str, what: &str) -> Words {
     let DeformedMesh { phantom, pose, .. } = mesh;
     let rigid = match paper::name_of(phantom) {
         None | Some("none") => "",
         Some(_) => {
             " The inclusion keeps its shape, since it is far stiffer than the gel, as the paper says of its Figure 6."
         }
+    };
+    let limit = match phantom.strain() {
+        Strain::Small => "below 0.2 small strain is at its limit".into(),
+        Strain::Finite => format!("a gel with less than {LEAST_DET} is refused"),
     };
     let counted = |count: usize, name: &str| match count {
         1 => format!("one {name}"),
@@ -58,15 +78,14 @@ fn words(mesh: &DeformedMesh) -> Words {
     };
     [
         format!(
-            "Figure 6. Deformed mesh, phantom “{}”, probe at depth {} mm, x = {} mm",
+            "{title}, phantom “{}”, probe at depth {} mm, x = {} mm",
             phantom.name(),
             millimetres(pose.depth),
             millimetres(pose.lateral)
         ),
         format!(
-            "The mesh as the probe deforms it (paper's Figure 6, whose pose is not stated), to scale and not exaggerated; elements are \
-             drawn with straight sides between their corners.{rigid} The smallest det(I + ∇u) is {}: 1 is undeformed, and below 0.2 \
-             small strain is at its limit.",
+            "The mesh as the probe deforms it ({what}), to scale and not exaggerated; elements are \
+             drawn with straight sides between their corners.{rigid} The smallest det(I + ∇u) is {}: 1 is undeformed, and {limit}.",
             fixed(mesh.min_det, 3)
         ),
         format!(

@@ -8,6 +8,7 @@
 //! | `plan.rs`, `bands.rs` | a figure as data; bands of a study as lines |
 //! | `setup.rs`, `mesh.rs` | Figures 1 and 6: phantom and probe to scale, and as the probe deforms it |
 //! | `theory.rs` | Figures 2, 3, 4 and 9: the detector alone |
+//! | `theories.rs` | forces and mesh under several theories of the gel |
 //! | `forces.rs` | Figures 5 and 7, and the signals |
 //! | `gamma.rs` | γ of a sweep beside what may be unknown of it |
 //! | `disturbed.rs` | γ of a sweep beside what may disturb it |
@@ -24,6 +25,7 @@ mod mesh;
 mod people;
 mod plan;
 mod setup;
+mod theories;
 mod theory;
 
 use super::text::FileNames;
@@ -38,11 +40,12 @@ use palpate::refusal::Refusal;
 /// Implements: REP-030, REP-031.
 pub fn figures(run: &Run, findings: &Findings) -> Result<Vec<Figure>, Refusal> {
     let mut plans = setup::figures(run);
-    plans.push(mesh::figure(&run.deformed));
+    plans.push(mesh::figure_6(&run.deformed));
     plans.extend(forces::figures(run, findings)?);
     plans.extend(theory::figures().map_err(Refusal::because("figures"))?);
     plans.extend(gamma::figure(run, findings));
     plans.extend(disturbed::figure(run, findings)?);
+    plans.extend(theories::figures(run, findings)?);
     plans.extend(inputs::figure(run));
     plans.extend(people::figures(run, &findings.people));
     plans.extend(bridge::figure(findings));

@@ -10,7 +10,8 @@ use askama::Template;
 use super::inputs::{Survival, survival};
 use super::text::printable;
 use super::{
-    Comparison, Figure, Findings, MapFindings, Quality, Run, Settings, Topic, Value, paper, text,
+    Comparison, Figure, Findings, MapFindings, Quality, Run, Settings, TheoryFindings, Topic,
+    Value, paper, text,
 };
 use crate::psychophysics::bridge::WeightRange;
 use crate::psychophysics::noise::SUMS;
@@ -24,10 +25,11 @@ pub const STYLE: &str = include_str!("style.css");
 const NAMESPACE: &str = " xmlns=\"http://www.w3.org/2000/svg\"";
 
 /// The sections below the opening: what the contents link to, and their headings.
-const CONTENTS: [(&str, &str); 9] = [
+const CONTENTS: [(&str, &str); 10] = [
     ("setup", "Set-up"),
     ("forces", "Forces and signals"),
     ("detection", "Detection"),
+    ("theories", "Small and finite strain"),
     ("inputs", "Uncertain inputs"),
     ("people", "People"),
     ("noise", "Noise"),
@@ -132,6 +134,12 @@ impl Page<'_> {
         study.of(name, &Kind::NormalForceN { lateral_m: 0.0 })?.band
     }
 
+    /// Whether the gel of the reference is at finite strain.
+    fn is_finite(&self) -> bool {
+        let certificate = self.run.reference.certificate();
+        certificate.is_some_and(|of| of.law.is_some())
+    }
+
     /// Name and certificate of the reference and of every map.
     fn certificates(&self) -> impl Iterator<Item = (&String, Option<&Quality>)> {
         let reference = &self.found.reference;
@@ -159,4 +167,21 @@ fn fate(of: &Conclusion) -> &'static str {
         Survival::Depends => "this conclusion depends on the inputs",
         Survival::Fails => "this conclusion does not survive the uncertainty of the inputs",
     }
+}
+
+/// To which depth of the probe the maps of one theory serve on a gel of another, in words.
+fn serving(on: &TheoryFindings, of: &TheoryFindings) -> String {
+    let first = on.templates.iter().position(|at| !at.serves);
+    let how_far = match (first, &on.templates[..]) {
+        (_, []) | (Some(0), _) => "at no depth of this run".into(),
+        (None, _) => "at every depth of this run".into(),
+        (Some(next), at) => format!(
+            "to a depth of {} mm",
+            text::millimetres(at[next - 1].depth_m)
+        ),
+    };
+    text::prose(format!(
+        "On a gel of {}, the maps of {} serve {how_far}.",
+        on.name, of.name
+    ))
 }

@@ -159,6 +159,7 @@ pub fn paper_run() -> Run {
         deformed: deformed(),
         settings: SETTINGS,
         study: None,
+        theories: Vec::new(),
     }
 }
 

@@ -1,0 +1,187 @@
+//! The phantoms of a run by several theories of the gel: what finite strain and friction change.
+
+use serde::Serialize;
+
+use super::maps::{MapFindings, ReferenceFindings, of_map, of_reference, signal};
+use super::nuisances::{BOTH, BY_DEFAULT, columns, space};
+use super::{Settings, Theory, paper};
+use crate::psychophysics::AnswerTable;
+use crate::psychophysics::bridge::{ConventionFit, bridge, probe_depth};
+use palpate::detect::nuisance::dot;
+use palpate::force_map::ForceMap;
+use palpate::phantom::{Phantom, Strain};
+use palpate::refusal::Refusal;
+use palpate::stats::normal;
+
+/// Templates of the first theory serve where they keep this part of γ,
+const LEAST_KEPT: f64 = 0.95;
+/// and where false alarms are no more than so many times as frequent as asked for.
+const MOST_ALARMS: f64 = 1.5;
+
+/// What one theory says at the probe depth.
+///
+/// Implements: REP-090.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TheoryFindings {
+    /// "small strain", "finite strain, friction 0.3".
+    pub name: String,
+    /// The phantom without inclusion.
+    pub reference: ReferenceFindings,
+    /// d ln F_n / d ln ν of its normal force at x = 0.
+    pub poisson_leverage: f64,
+    /// One for each map, in the order of the run.
+    pub maps: Vec<MapFindings>,
+    /// Each explanation of the answers to FEM playback; none without two of the paper's phantoms.
+    pub explanations: Vec<Explanation>,
+    /// What templates of the first theory do on a gel of this one, at each depth of the probe; none for the first itself.
+    pub templates: Vec<TemplateUse>,
+}
+
+/// How well an explanation fits the answers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Explanation {
+    /// What of the force is taken to count.
+    pub name: String,
+    /// The larger p-value of the fits by subject.
+    pub p_value: f64,
+    /// Whether that is below the level.
+    pub is_rejected: bool,
+}
+
+impl From<&ConventionFit> for Explanation {
+    fn from(fit: &ConventionFit) -> Explanation {
+        Explanation {
+            name: fit.name.clone(),
+            p_value: fit.p_value,
+            is_rejected: fit.is_rejected,
+        }
+    }
+}
+
+/// What templates and reference of one theory do at one depth on a gel of another.
+///
+/// Implements: REP-091.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TemplateUse {
+    /// The depth of the probe, m.
+    pub depth_m: f64,
+    /// The least part of γ that they keep.
+    pub kept: f64,
+    /// The largest false-alarm rate in place of the one asked for.
+    pub false_alarm: f64,
+    /// Whether they serve.
+    pub serves: bool,
+}
+
+/// What the theories of a run say.
+///
+/// # Errors
+/// Maps of one theory over different poses, or theories over different ones.
+pub(super) fn findings(
+    theories: &[Theory],
+    settings: &Settings,
+) -> Result<Vec<TheoryFindings>, Refusal> {
+    let of = |theory: &Theory| {
+        let reference = &theory.reference;
+        let (depth, _) = probe_depth(reference.table().depths());
+        let maps = theory.maps.iter();
+        let maps = maps.map(|map| of_map(reference, settings, map, depth));
+        Ok(TheoryFindings {
+            name: theory.name(),
+            reference: of_reference(reference, depth)?,
+            poisson_leverage: theory.poisson_leverage,
+            maps: maps.collect::<Result<_, Refusal>>()?,
+            explanations: explanations(theory)?,
+            templates: templates(&theories[0], theory, settings)?,
+        })
+    };
+    theories.iter().map(of).collect()
+}
+
+/// The paper's name of a map's phantom, whatever its theory.
+fn name_of(map: &ForceMap) -> Option<&'static str> {
+    let plain = map.phantom()?.changed(|parts| {
+        parts.strain = Strain::Small;
+        parts.probe.friction = 0.0;
+    });
+    paper::name_of(&plain.ok()?)
+}
+
+fn explanations(theory: &Theory) -> Result<Vec<Explanation>, Refusal> {
+    let named = |name| {
+        Some((
+            name,
+            theory.maps.iter().find(|map| name_of(map) == Some(name))?,
+        ))
+    };
+    let inclusions: Vec<_> = paper::INCLUSIONS.into_iter().filter_map(named).collect();
+    if name_of(&theory.reference) != Some("none") || inclusions.len() < 2 {
+        return Ok(Vec::new());
+    }
+    let bridge = bridge(&AnswerTable::paper()?, &theory.reference, &inclusions, None)?;
+    let playback = bridge.conditions.get(paper::FEM_PLAYBACK).into_iter();
+    let fits = playback.flat_map(|condition| &condition.conventions);
+    Ok(fits.map(Explanation::from).collect())
+}
+
+fn templates(
+    first: &Theory,
+    theory: &Theory,
+    settings: &Settings,
+) -> Result<Vec<TemplateUse>, Refusal> {
+    if std::ptr::eq(first, theory) {
+        return Ok(Vec::new());
+    }
+    let depths = theory.reference.table().depths().iter();
+    let at = |&depth: &f64| template_use(first, theory, settings, depth).transpose();
+    depths.filter_map(at).collect()
+}
+
+/// `None` where no map has a template: at depth 0, and without inclusions.
+fn template_use(
+    first: &Theory,
+    theory: &Theory,
+    settings: &Settings,
+    depth: f64,
+) -> Result<Option<TemplateUse>, Refusal> {
+    let mut columns = columns(&first.reference, BY_DEFAULT, depth, BOTH)?;
+    let off = BOTH(signal(&first.reference, &theory.reference, depth)?.as_deref());
+    let space = space(&mut columns, off.len())?;
+    let projected = |mut vector: Vec<f64>| {
+        let length = space.project(&mut vector);
+        (vector, length)
+    };
+    let (off, _) = projected(off);
+    let asked = settings.max_false_alarm;
+    let quantile = normal::quantile(asked).map_err(Refusal::because("settings"))?;
+    let (mut kept, mut false_alarm) = (f64::INFINITY, 0.0_f64);
+    for (template, map) in first.maps.iter().zip(&theory.maps) {
+        let template = BOTH(signal(&first.reference, template, depth)?.as_deref());
+        let (template, length) = projected(template);
+        let there = BOTH(signal(&theory.reference, map, depth)?.as_deref());
+        let (there, strength) = projected(there);
+        if length > 0.0 && strength > 0.0 {
+            kept = kept.min(dot(&template, &there) / (length * strength));
+            let bias = dot(&template, &off) / (length * settings.noise_sd_n);
+            false_alarm = false_alarm.max(normal::lower_tail(quantile + bias));
+        }
+    }
+    Ok(kept.is_finite().then_some(TemplateUse {
+        depth_m: depth,
+        kept,
+        false_alarm,
+        serves: kept >= LEAST_KEPT && false_alarm <= MOST_ALARMS * asked,
+    }))
+}
+
+impl Theory {
+    /// "small strain", "finite strain", "finite strain, friction 0.3".
+    pub fn name(&self) -> String {
+        let of = |phantom: &Phantom| match (phantom.strain(), phantom.probe().friction) {
+            (Strain::Small, _) => "small strain".into(),
+            (Strain::Finite, 0.0) => "finite strain".into(),
+            (Strain::Finite, friction) => format!("finite strain, friction {friction}"),
+        };
+        self.reference.phantom().map_or("measured".into(), of)
+    }
+}

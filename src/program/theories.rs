@@ -1,0 +1,102 @@
+//! `palpate run --compare-theories`: the phantoms of a run under several theories of the gel.
+
+use rayon::prelude::*;
+
+use super::CliError;
+use super::config::Config;
+use super::progress::{bar, tell_time};
+use super::run::{deformed_mesh, shown};
+use palpate::fem::{FemError, Model, Pose};
+use palpate::phantom::{Material, Phantom, Strain};
+use palpate_paper::psychophysics::bridge::probe_depth;
+use palpate_paper::report::Theory;
+
+/// What is compared: strain and coefficient of friction.
+const THEORIES: [(Strain, f64); 3] = [
+    (Strain::Small, 0.0),
+    (Strain::Finite, 0.0),
+    (Strain::Finite, 0.3),
+];
+/// The part by which Poisson's ratios are changed up and down for the leverage, at the most.
+const CHANGE: f64 = 2e-3;
+
+/// The phantoms, the reference first, under each theory.
+///
+/// Implements: CLI-179.
+pub fn compare(config: &Config, phantoms: &[Phantom]) -> Result<Vec<Theory>, CliError> {
+    let theory = |(strain, friction): (Strain, f64)| {
+        let of = |phantom: &Phantom| {
+            phantom.changed(|parts| {
+                parts.strain = strain;
+                parts.probe.friction = friction;
+            })
+        };
+        let phantoms = phantoms.iter().map(of).collect::<Result<Vec<_>, _>>()?;
+        solve(config, &phantoms)
+    };
+    THEORIES.into_iter().map(theory).collect()
+}
+
+fn failed(phantom: &Phantom) -> impl Fn(FemError) -> CliError {
+    CliError::fem(phantom.name())
+}
+
+fn solve(config: &Config, phantoms: &[Phantom]) -> Result<Theory, CliError> {
+    let (depths, laterals) = (&config.depths, &config.laterals);
+    let size = config.mesh.size_mm / 1e3;
+    let models = phantoms
+        .par_iter()
+        .map(|phantom| Model::new(phantom, size, config.mesh.contact).map_err(failed(phantom)));
+    let models = models.collect::<Result<Vec<_>, _>>()?;
+    let poses = models
+        .iter()
+        .map(|model| depths.len() * model.solved_laterals(laterals).len());
+    let poses: Vec<usize> = poses.collect();
+    let most = poses.iter().copied().max().unwrap_or(0);
+    tell_time(&phantoms[0], size, [phantoms.len(), most]).map_err(failed(&phantoms[0]))?;
+    let bar = bar(poses.iter().sum(), "poses");
+    let maps = models.par_iter().map(|model| {
+        let map = model.map(depths, laterals, &|poses| bar.inc(poses as u64));
+        map.map_err(failed(model.phantom()))
+    });
+    let mut maps = maps.collect::<Result<Vec<_>, _>>()?;
+    bar.finish_and_clear();
+    let shown = shown(phantoms);
+    let deformed = deformed_mesh(&models[shown], &maps[shown]);
+    let leverage = poisson_leverage(config, &phantoms[0]);
+    Ok(Theory {
+        reference: maps.remove(0),
+        maps,
+        deformed: deformed.map_err(failed(&phantoms[shown]))?,
+        poisson_leverage: leverage.map_err(failed(&phantoms[0]))?,
+    })
+}
+
+/// d ln F_n / d ln ν of the normal force at the probe depth and x = 0.
+///
+/// Implements: REP-090.
+fn poisson_leverage(config: &Config, phantom: &Phantom) -> Result<f64, FemError> {
+    let (depth, _) = probe_depth(&config.depths);
+    let lateral = 0.0;
+    let force = |factor: f64| {
+        let changed = phantom.changed(|parts| {
+            for layer in &mut parts.layers {
+                layer.material.poisson_ratio *= factor;
+            }
+            for inclusion in &mut parts.inclusions {
+                inclusion.material.poisson_ratio *= factor;
+            }
+        })?;
+        let model = Model::new(&changed, config.mesh.size_mm / 1e3, config.mesh.contact)?;
+        Ok::<f64, FemError>(model.solve(Pose { depth, lateral })?.force.normal)
+    };
+    let materials = phantom.layers().iter().map(|of| of.material);
+    let materials = materials.chain(phantom.inclusions().iter().map(|of| of.material));
+    // Half of the way to ν = 0.5 at the most.
+    let most = |most: f64, of: Material| most.min(0.25 / of.poisson_ratio - 0.5);
+    let change = materials
+        .filter(|of| of.poisson_ratio > 0.0)
+        .fold(CHANGE, most);
+    let [less, more] = [force(1.0 - change)?, force(1.0 + change)?];
+    Ok((more - less) / (more + less) / change)
+}
