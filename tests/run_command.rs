@@ -37,6 +37,79 @@ fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
     }
 }
 
+/// An independent study of the same gel found normal forces of 1.482 N at small and 2.33 N at finite strain, −1.0 N of lateral force
+/// with a friction of 0.3, and changes by 7.3 and about 14 % for each per cent of ν.
+// Verifies: CLI-179, REP-090, REP-092.
+#[test]
+fn theories_are_compared_by_forces_that_another_program_found() {
+    let here = Place::new("theories");
+    let config = "phantoms = [\"6.6\"]\ndepths_mm = \"4\"\nlaterals_mm = \"-4,0,4\"\n[mesh]\nsize_mm = 2.0\n";
+    here.write("run.toml", config);
+    here.succeed("run --config run.toml --compare-theories");
+    let summary = here.read("palpate-out/summary.json");
+    let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+    let theories = summary["findings"]["theories"].as_array().unwrap();
+    assert_eq!(theories.len(), 3);
+    let expected = [(Some(1.482), 7.3), (Some(2.33), 14.0), (None, 14.0)];
+    for (theory, (normal, leverage)) in theories.iter().zip(expected) {
+        let number = |value: &serde_json::Value| value.as_f64().unwrap();
+        let found = number(&theory["reference"]["normal_force_at_centre_n"]);
+        let is_near = |normal: f64| (found / normal - 1.0).abs() < 0.03;
+        assert!(normal.is_none_or(is_near), "{found} for {normal:?}");
+        let found = number(&theory["poisson_leverage"]);
+        assert!((found - leverage).abs() < 1.5, "{found} for {leverage}");
+    }
+    let page = here.read("palpate-out/report.html");
+    assert_has(&page, "On a gel of finite strain, friction 0.3,");
+    let figure = here.read("palpate-out/figures/theories.svg");
+    assert_has(&figure, "finite strain, friction 0.3");
+}
+
+// Verifies: CLI-180, FEM-016.
+#[test]
+fn a_path_prints_a_row_for_each_pose_and_writes_a_series() {
+    let here = Place::new("path");
+    let line = "solve --phantom none --strain finite --friction 0.3 --mesh-mm 2 --depths-mm 1,2 --laterals-mm 0,2,0.5 --path --pvd gel.pvd";
+    let table = here.succeed(line);
+    let rows: Vec<Vec<f64>> = table
+        .lines()
+        .skip(1)
+        .map(|row| {
+            row.split_whitespace()
+                .map(|word| word.parse().unwrap())
+                .collect()
+        })
+        .collect();
+    let poses: Vec<&[f64]> = rows.iter().map(|row| &row[..2]).collect();
+    assert_eq!(poses, [[1.0, 0.0], [2.0, 0.0], [2.0, 2.0], [2.0, 0.5]]);
+    // No drag on the way down; then against the way: to the left, and to the right on the way back.
+    assert!(
+        rows[1][3].abs() < 1e-3 && rows[2][3] < -0.1 && rows[3][3] > 0.1,
+        "{table}"
+    );
+    let list = here.read("gel.pvd");
+    for at in 0..4 {
+        assert_has(
+            &list,
+            &format!("<DataSet timestep=\"{at}\" file=\"gel-{at}.vtu\"/>"),
+        );
+        assert_has(&here.read(&format!("gel-{at}.vtu")), "Name=\"slip_m\"");
+    }
+    let csv = here.succeed(&line.replace("--pvd gel.pvd", "--format csv"));
+    let last = csv.lines().next_back().unwrap();
+    assert!(
+        csv.starts_with("lateral_mm,depth_mm,normal_force_n,lateral_force_n\n"),
+        "{csv}"
+    );
+    assert!(last.starts_with("0.5,2,"), "{last}");
+    for (more, told) in [
+        ("--format json", "--path prints no map"),
+        ("--certify", "cannot be used with"),
+    ] {
+        assert_has(&here.refused(&format!("{line} {more}")), told);
+    }
+}
+
 // Verifies: CLI-031, CLI-032, REP-003.
 #[test]
 fn a_run_of_own_asymmetric_phantoms_shows_them() {

@@ -12,7 +12,7 @@ use super::output::{print, write};
 use super::progress::{bar, tell_large_mesh};
 use palpate::decimal::mm;
 use palpate::fem::certify::certified_map;
-use palpate::fem::{Contact, MESH_SIZE, Model, Pose, SMALL_STRAIN_LIMIT};
+use palpate::fem::{Contact, MESH_SIZE, Model, Pose, PoseSolution, SMALL_STRAIN_LIMIT};
 use palpate::force_map::{ForceMap, SmallestDet};
 use palpate::phantom::{BUILTIN_NAMES, Phantom, Strain};
 
@@ -42,6 +42,12 @@ pub struct SolveArguments {
     /// Writes the deformed mesh with stresses for ParaView; single pose only
     #[arg(long, value_name = "FILE")]
     vtu: Option<PathBuf>,
+    /// Leads the probe down at the first lateral position, then through the others at the last depth; nodes stick and slip
+    #[arg(long, conflicts_with_all = ["certify", "vtu"])]
+    path: bool,
+    /// Writes the deformed mesh of each pose of the path for ParaView
+    #[arg(long, value_name = "FILE.pvd", requires = "path")]
+    pvd: Option<PathBuf>,
     /// Output format
     #[arg(long, value_enum, default_value_t = MapFormat::Table)]
     format: MapFormat,
@@ -123,6 +129,9 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     let size = arguments.mesh_size.unwrap_or(MESH_SIZE);
     tell_large_mesh(&phantom, size).map_err(&failed)?;
     let model = Model::new(&phantom, size, arguments.contact).map_err(&failed)?;
+    if arguments.path {
+        return along_path(&model, arguments);
+    }
     let meshes = if arguments.certify { 3 } else { 1 };
     let columns = model.solved_laterals(laterals).len();
     let bar = bar(meshes * depths.len() * columns, phantom.name());
@@ -146,6 +155,62 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
         MapFormat::Csv => map.table().to_csv(),
     })?;
     strain
+}
+
+/// Leads the probe along the path, and prints a row for each pose.
+///
+/// Implements: CLI-180.
+fn along_path(model: &Model, arguments: &SolveArguments) -> Result<(), CliError> {
+    let (depths, laterals) = (&arguments.depths[..], &arguments.laterals[..]);
+    let (Some(&last), Some((&first, others))) = (depths.last(), laterals.split_first()) else {
+        refuse!("--path needs a depth and a lateral position");
+    };
+    if arguments.format == MapFormat::Json {
+        refuse!("--path prints no map; give --format table or csv");
+    }
+    let down = depths.iter().map(|&depth| (depth, first));
+    let across = others.iter().map(|&lateral| (last, lateral));
+    let poses: Vec<Pose> = down
+        .chain(across)
+        .map(|(depth, lateral)| Pose { depth, lateral })
+        .collect();
+    let failed = CliError::fem(model.phantom().name());
+    let path = model.path(&poses).map_err(&failed)?;
+    if let Some(list) = &arguments.pvd {
+        write_series(list, &model.vtu_series(&path).map_err(&failed)?)?;
+    }
+    print(&match arguments.format {
+        // Writing to a String does not fail.
+        MapFormat::Table => PathTable { path: &path }.render().unwrap_or_default(),
+        _ => {
+            let row = |of: &PoseSolution| {
+                let (pose, force) = (of.pose, of.force);
+                let place = format!("{},{}", mm(pose.lateral), mm(pose.depth));
+                format!("{place},{},{}\n", force.normal, force.lateral)
+            };
+            let rows: String = path.iter().map(row).collect();
+            format!("lateral_mm,depth_mm,normal_force_n,lateral_force_n\n{rows}")
+        }
+    })
+}
+
+/// Writes a series of meshes beside the `list` of them, numbered from 0.
+fn write_series(list: &Path, series: &[String]) -> Result<(), CliError> {
+    let mut sets = String::new();
+    for (at, text) in series.iter().enumerate() {
+        let part = list.with_extension("");
+        let name = part.file_name().unwrap_or_default().to_string_lossy();
+        let name = format!("{name}-{at}.vtu");
+        let shown = palpate::text::escape(&name);
+        sets += &format!("<DataSet timestep=\"{at}\" file=\"{shown}\"/>\n");
+        write(&list.with_file_name(name), text)?;
+    }
+    write(
+        list,
+        &format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n{sets}</Collection>\n</VTKFile>\n"
+        ),
+    )
 }
 
 /// Warns on standard error where the strain of `phantom` is too large for the model.
@@ -183,6 +248,13 @@ pub fn tell_large_strain(map: &ForceMap, phantom: &str) -> Result<(), CliError> 
 #[template(path = "cli.txt", block = "solve")]
 struct Table<'a> {
     map: &'a ForceMap,
+}
+
+/// The forces along a path for people.
+#[derive(Template)]
+#[template(path = "cli.txt", block = "path")]
+struct PathTable<'a> {
+    path: &'a [PoseSolution],
 }
 
 /// A length (m) as a number of mm.

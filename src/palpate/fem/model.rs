@@ -303,6 +303,21 @@ impl Model {
         Ok(solutions)
     }
 
+    /// The gel under a probe that goes from pose to pose; with friction, nodes stick and slip as that way leads them.
+    ///
+    /// # Errors
+    /// As [`Model::solve`].
+    ///
+    /// Implements: FIN-011.
+    pub fn path(&self, poses: &[Pose]) -> Result<Vec<PoseSolution>, FemError> {
+        let (Some(finite), Some(first)) = (&self.finite, poses.first()) else {
+            return poses.iter().map(|&pose| self.solve(pose)).collect();
+        };
+        let finite = finite.along_path();
+        let path = finite.path(finite.untouched(first.lateral), poses)?;
+        Ok(path.into_iter().map(PoseSolution::from).collect())
+    }
+
     /// The force map over `depths` × `laterals` (m, both increasing) with its certificate. Negative lateral
     /// positions are the mirror images of positive ones. `solved` is told after each lateral position how
     /// many poses that were.

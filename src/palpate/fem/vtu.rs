@@ -1,9 +1,14 @@
 //! One pose as a VTK unstructured grid in ASCII (`.vtu`), for ParaView.
 
+use std::iter::once;
+
+use nalgebra::Vector2;
+
 use super::element::{NODES, SAMPLES, stress};
-use super::field::determinant;
+use super::field::{Field, determinant};
+use super::finite::Place;
 use super::mesh::Region;
-use super::{FemError, Model, PoseSolution, State};
+use super::{FemError, Model, Pose, PoseSolution, State};
 use crate::phantom::Geometry;
 use crate::refusal::Refusal;
 
@@ -11,8 +16,19 @@ use crate::refusal::Refusal;
 const QUADRATIC_TRIANGLE: u8 = 22;
 
 impl Model {
-    /// The deformed mesh of a solved pose: points at their deformed positions, m; the displacement at
-    /// each point, m; in each element its region (layers from the top, then inclusions), the mean over its
+    /// A path of solved poses as [`Model::vtu`] writes each, with what slipped since the pose before.
+    ///
+    /// # Errors
+    /// As [`Model::vtu`].
+    pub fn vtu_series(&self, path: &[PoseSolution]) -> Result<Vec<String>, FemError> {
+        let before = once(None).chain(path.iter().map(Some));
+        let each = path.iter().zip(before);
+        each.map(|(now, before)| self.written(now, before))
+            .collect()
+    }
+
+    /// The deformed mesh of a solved pose: points at their deformed positions, m; at each point the displacement, m, pressure and
+    /// shear stress of the probe, Pa, and the slip along it, m, which is 0; in each element its region (layers from the top, then inclusions), the mean over its
     /// sampling points of stress and pressure, Pa, the von Mises stress of that mean, Pa, and the
     /// smallest det(I + ∇u).
     ///
@@ -21,10 +37,20 @@ impl Model {
     /// # Errors
     /// [`FemError::Residual`].
     pub fn vtu(&self, solution: &PoseSolution) -> Result<String, FemError> {
+        self.written(solution, None)
+    }
+
+    fn written(
+        &self,
+        solution: &PoseSolution,
+        before: Option<&PoseSolution>,
+    ) -> Result<String, FemError> {
         let found = "the stresses of an axisymmetric phantom cannot be written yet";
         let is_revolved = self.phantom().geometry() == Geometry::Axisymmetric;
         Refusal::state(found, "leave out the file for ParaView").when(is_revolved)?;
         let field = self.field(solution)?;
+        let before = before.map(|before| Ok::<_, FemError>((self.field(before)?, before.pose)));
+        let touches = self.touches(solution, &field, before.transpose()?);
         let mesh = self.mesh();
         let (nodes, elements) = (mesh.nodes.len(), mesh.regions.len());
         let displacements = &field.displacements;
@@ -64,6 +90,9 @@ impl Model {
             array("Float64", "position_m", deformed),
             "</Points>\n<PointData Vectors=\"displacement_m\">\n".into(),
             array("Float64", "displacement_m", displacements.iter().map(|u| [u[0], u[1], 0.0])),
+            array("Float64", "contact_pressure_pa", touches.iter().map(|of| [of.pressure])),
+            array("Float64", "contact_shear_pa", touches.iter().map(|of| [of.shear])),
+            array("Float64", "slip_m", touches.iter().map(|of| [of.slip])),
             "</PointData>\n<CellData Scalars=\"von_mises_pa\">\n".into(),
             array("UInt8", "region", mesh.regions.iter().map(number)),
             array("Float64", "stress_xx_yy_zz_xy_pa", stresses.iter().copied()),
@@ -77,6 +106,67 @@ impl Model {
             "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n".into(),
         ]
         .concat())
+    }
+}
+
+/// What the probe does to a node.
+#[derive(Clone, Copy, Default)]
+struct OnNode {
+    /// Pa, on the deformed surface.
+    pressure: f64,
+    /// Pa, to the right along the probe.
+    shear: f64,
+    /// To the right along the probe since the pose before, m.
+    slip: f64,
+}
+
+impl Model {
+    /// What the probe does to each node.
+    fn touches(
+        &self,
+        solution: &PoseSolution,
+        field: &Field,
+        before: Option<(Field, Pose)>,
+    ) -> Vec<OnNode> {
+        let (mesh, probe) = (self.mesh(), self.phantom().probe());
+        let at = |field: &Field, node: usize| {
+            Vector2::from(mesh.nodes[node]) + Vector2::from(field.displacements[node])
+        };
+        let place = |field: &Field, pose, node| Place::new(at(field, node), pose, probe.radius);
+        // Simpson's rule over each edge, whose middle node stands between its ends.
+        let mut lengths = vec![0.0; mesh.surface.len()];
+        for first in (0..mesh.surface.len().saturating_sub(2)).step_by(2) {
+            let way = at(field, mesh.surface[first + 2]) - at(field, mesh.surface[first]);
+            let length = libm::sqrt(way.dot(&way));
+            for (k, weight) in [1.0, 4.0, 1.0].into_iter().enumerate() {
+                lengths[first + k] += weight / 6.0 * length;
+            }
+        }
+        let mut touches = vec![OnNode::default(); mesh.nodes.len()];
+        let forces = self.forces_on_surface(solution);
+        for ((&node, force), length) in mesh.surface.iter().zip(forces).zip(lengths) {
+            if force == [0.0; 2] {
+                continue;
+            }
+            let now = place(field, solution.pose, node);
+            let stress = Vector2::from(force) / (length * probe.length);
+            touches[node] = OnNode {
+                pressure: stress.dot(&now.normal),
+                shear: stress.dot(&now.tangent()),
+                slip: before
+                    .as_ref()
+                    .map_or(0.0, |(field, pose)| now.arc - place(field, *pose, node).arc),
+            };
+        }
+        touches
+    }
+
+    /// The force on the gel at each node at the surface, N.
+    fn forces_on_surface(&self, solution: &PoseSolution) -> Vec<[f64; 2]> {
+        match &solution.state {
+            State::Small(state) => self.surface().at_nodes(state, solution.pose).1,
+            State::Finite(rest) => rest.forces.clone(),
+        }
     }
 }
 

@@ -73,7 +73,7 @@ use people::normal_approximation;
 pub use quality::Quality;
 pub use summary::summary_json;
 pub use text::FileNames;
-pub use theories::{Explanation, TemplateUse, TheoryFindings};
+pub use theories::{Explanation, TemplateUse, TemplateUseAtDepth, TheoryFindings};
 
 pub use crate::settings::Settings;
 use crate::study::StudyResults;

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::maps::{MapFindings, ReferenceFindings, of_map, of_reference, signal};
 use super::nuisances::{BOTH, BY_DEFAULT, columns, space};
+use super::text::name_of_map;
 use super::{Settings, Theory, paper};
 use crate::psychophysics::AnswerTable;
 use crate::psychophysics::bridge::{ConventionFit, bridge, probe_depth};
@@ -33,7 +34,7 @@ pub struct TheoryFindings {
     pub maps: Vec<MapFindings>,
     /// Each explanation of the answers to FEM playback; none without two of the paper's phantoms.
     pub explanations: Vec<Explanation>,
-    /// What templates of the first theory do on a gel of this one, at each depth of the probe; none for the first itself.
+    /// What the template of each map of the first theory does on a gel of this one; none for the first itself.
     pub templates: Vec<TemplateUse>,
 }
 
@@ -58,18 +59,27 @@ impl From<&ConventionFit> for Explanation {
     }
 }
 
-/// What templates and reference of one theory do at one depth on a gel of another.
+/// What template and reference of one theory do on a gel of another.
 ///
 /// Implements: REP-091.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TemplateUse {
+    /// The name of the phantom: untrusted text.
+    pub name: String,
+    /// At each depth of the probe where there is a template.
+    pub at: Vec<TemplateUseAtDepth>,
+}
+
+/// The same at one depth.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct TemplateUseAtDepth {
     /// The depth of the probe, m.
     pub depth_m: f64,
-    /// The least part of γ that they keep.
+    /// The part of γ that the template keeps.
     pub kept: f64,
-    /// The largest false-alarm rate in place of the one asked for.
+    /// The false-alarm rate in place of the one asked for.
     pub false_alarm: f64,
-    /// Whether they serve.
+    /// Whether the template serves.
     pub serves: bool,
 }
 
@@ -132,41 +142,50 @@ fn templates(
     if std::ptr::eq(first, theory) {
         return Ok(Vec::new());
     }
+    let pairs = first.maps.iter().zip(&theory.maps);
     let depths = theory.reference.table().depths().iter();
-    let at = |&depth: &f64| template_use(first, theory, settings, depth).transpose();
-    depths.filter_map(at).collect()
+    let of = |(template, there): (&ForceMap, &ForceMap)| {
+        let at = |&depth: &f64| {
+            let references = [&first.reference, &theory.reference];
+            template_use(references, [template, there], settings, depth).transpose()
+        };
+        Ok(TemplateUse {
+            name: name_of_map(there),
+            at: depths.clone().filter_map(at).collect::<Result<_, _>>()?,
+        })
+    };
+    pairs.map(of).collect()
 }
 
-/// `None` where no map has a template: at depth 0, and without inclusions.
+/// What the first of two maps, over the first of two references, does where the second of each is true; `None` where either has no
+/// signal, as at depth 0.
 fn template_use(
-    first: &Theory,
-    theory: &Theory,
+    references: [&ForceMap; 2],
+    maps: [&ForceMap; 2],
     settings: &Settings,
     depth: f64,
-) -> Result<Option<TemplateUse>, Refusal> {
-    let mut columns = columns(&first.reference, BY_DEFAULT, depth, BOTH)?;
-    let off = BOTH(signal(&first.reference, &theory.reference, depth)?.as_deref());
+) -> Result<Option<TemplateUseAtDepth>, Refusal> {
+    let mut columns = columns(references[0], BY_DEFAULT, depth, BOTH)?;
+    let off = BOTH(signal(references[0], references[1], depth)?.as_deref());
     let space = space(&mut columns, off.len())?;
     let projected = |mut vector: Vec<f64>| {
         let length = space.project(&mut vector);
         (vector, length)
     };
-    let (off, _) = projected(off);
+    let of = |which: usize| -> Result<_, Refusal> {
+        let signal = signal(references[which], maps[which], depth)?;
+        Ok(projected(BOTH(signal.as_deref())))
+    };
+    let ((template, length), (there, strength)) = (of(0)?, of(1)?);
+    if length == 0.0 || strength == 0.0 {
+        return Ok(None);
+    }
     let asked = settings.max_false_alarm;
     let quantile = normal::quantile(asked).map_err(Refusal::because("settings"))?;
-    let (mut kept, mut false_alarm) = (f64::INFINITY, 0.0_f64);
-    for (template, map) in first.maps.iter().zip(&theory.maps) {
-        let template = BOTH(signal(&first.reference, template, depth)?.as_deref());
-        let (template, length) = projected(template);
-        let there = BOTH(signal(&theory.reference, map, depth)?.as_deref());
-        let (there, strength) = projected(there);
-        if length > 0.0 && strength > 0.0 {
-            kept = kept.min(dot(&template, &there) / (length * strength));
-            let bias = dot(&template, &off) / (length * settings.noise_sd_n);
-            false_alarm = false_alarm.max(normal::lower_tail(quantile + bias));
-        }
-    }
-    Ok(kept.is_finite().then_some(TemplateUse {
+    let bias = dot(&template, &projected(off).0) / (length * settings.noise_sd_n);
+    let kept = dot(&template, &there) / (length * strength);
+    let false_alarm = normal::lower_tail(quantile + bias);
+    Ok(Some(TemplateUseAtDepth {
         depth_m: depth,
         kept,
         false_alarm,

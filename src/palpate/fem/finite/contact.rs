@@ -89,7 +89,7 @@ pub(super) struct Settled {
 
 /// A node seen from the probe's axis.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(in crate::fem) struct Place {
     pub gap: f64,
     pub normal: Vector2<f64>,
     distance: f64,

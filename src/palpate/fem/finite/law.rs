@@ -1,7 +1,8 @@
 //! What a material stores at finite strain, and the forces and stiffness of one element that follow from it.
 //!
 //! Bonet and Wood's compressible neo-Hookean law, W = μ/2 (I₁ − 3 − 2 ln J) + λ/2 (ln J)², with the pressure p = λ ln J
-//! interpolated on its own: λ/2 (ln J)² is written p ln J − p²/(2λ), which is stationary in p. Yeoh's second term adds
+//! interpolated on its own: λ/2 (ln J)² is written p ln J − p²/(2λ) + α/2 (ln J − p/λ)², which is stationary in p and has the same
+//! value there. Yeoh's second term adds
 //! C₂₀ (I₁ − 3)², and fibres along a, of which E_f is the modulus, add E_f/8 (I₄ − 1)² with I₄ = |F a|².
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
@@ -34,7 +35,7 @@ pub fn name(phantom: &Phantom) -> String {
 
 /// The constants of a law, Pa.
 ///
-/// Implements: FIN-001.
+/// Implements: FIN-001, FIN-014.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Law {
     lambda: f64,
@@ -42,7 +43,12 @@ pub(super) struct Law {
     c20: f64,
     fibre_modulus: f64,
     fibres: Vector2<f64>,
+    /// What each point asks of ln J = p/λ by itself, Pa.
+    stabilising: f64,
 }
+
+/// [`Law::stabilising`] over μ, and over λ at the most.
+const STABILISING: [f64; 2] = [3.0, 0.5];
 
 impl From<&Material> for Law {
     fn from(material: &Material) -> Law {
@@ -53,6 +59,7 @@ impl From<&Material> for Law {
             c20: material.yeoh_c20,
             fibre_modulus: material.fibre_modulus,
             fibres: material.fibre_direction().into(),
+            stabilising: (STABILISING[0] * mu).min(STABILISING[1] * lambda),
         }
     }
 }
@@ -112,7 +119,8 @@ impl Law {
     ///
     /// With the spatial gradients g_a = F⁻ᵀ∇N_a, q_a = F∇N_a, f_a = ∇N_a·a, c = p − μ, m = μ + 4 C₂₀ (I₁ − 3) and
     /// t = E_f (I₄ − 1)/2, the force on node a is m q_a + t f_a F a + c g_a, and its derivative by the displacement of node b
-    /// (m ∇N_a·∇N_b + t f_a f_b) I + 8 C₂₀ q_a q_bᵀ + E_f f_a f_b (F a)(F a)ᵀ − c g_b g_aᵀ. Turned about an axis, with h_a = N_a/X and
+    /// (m ∇N_a·∇N_b + t f_a f_b) I + 8 C₂₀ q_a q_bᵀ + E_f f_a f_b (F a)(F a)ᵀ − c g_b g_aᵀ + α g_a g_bᵀ, where c also has
+    /// α (ln J − p/λ). Turned about an axis, with h_a = N_a/X and
     /// the stretch s of the circle, q_a grows by s h_a e_x, the g_a of the force by (h_a/s) e_x, and the derivative by
     /// h_a h_b (m − c/s²) e_x e_xᵀ.
     pub(super) fn element(
@@ -173,7 +181,11 @@ impl Law {
         pressure: f64,
     ) {
         let Law {
-            lambda, mu, c20, ..
+            lambda,
+            mu,
+            c20,
+            stabilising,
+            ..
         } = *self;
         let volume = point.volume;
         let [[xx, yx], [xy, yy]] = gradient.data.0;
@@ -190,9 +202,12 @@ impl Law {
         let stretch = stretched.norm_squared() - 1.0;
         let isochoric = 0.5 * mu * (growth - 2.0 * ln_det) + c20 * growth * growth;
         let fibrous = self.fibre_modulus / 8.0 * stretch * stretch;
-        let volumetric = pressure * (ln_det - pressure / (2.0 * lambda));
+        let off = ln_det - pressure / lambda;
+        let share = 1.0 - stabilising / lambda;
+        let volumetric =
+            pressure * (ln_det - pressure / (2.0 * lambda)) + 0.5 * stabilising * off * off;
         element.energy += volume * (isochoric + fibrous + volumetric);
-        let excess = volume * (pressure - mu);
+        let excess = volume * (pressure + stabilising * off - mu);
         let stiff = volume * (mu + 4.0 * c20 * growth);
         let tension = volume * self.fibre_modulus * stretch / 2.0;
         for b in 0..NODES {
@@ -209,19 +224,20 @@ impl Law {
                 block += Matrix2::from_diagonal_element(isotropic)
                     + moved.column(a) * (8.0 * volume * c20) * moved_b.transpose()
                     + stretched * (volume * self.fibre_modulus * both) * stretched.transpose()
-                    - spatial_b * excess * spatial.column(a).transpose();
+                    - spatial_b * excess * spatial.column(a).transpose()
+                    + dilation.column(a) * (volume * stabilising) * dilation_b.transpose();
                 let circles = point.hoop[a] * point.hoop[b];
                 block[(0, 0)] += circles * (stiff - excess / (hoop * hoop));
             }
             for (k, shape) in point.pressures.iter().enumerate() {
                 let column = 2 * NODES + k;
                 let mut block = element.tangent.fixed_view_mut::<2, 1>(2 * b, column);
-                block += dilation_b * (shape * point.volume);
+                block += dilation_b * (share * shape * point.volume);
             }
         }
         for (k, shape) in point.pressures.iter().enumerate() {
-            let weight = shape * point.volume;
-            element.force[2 * NODES + k] += weight * (ln_det - pressure / lambda);
+            let weight = share * shape * point.volume;
+            element.force[2 * NODES + k] += weight * off;
             for (l, other) in point.pressures.iter().enumerate().skip(k) {
                 element.tangent[(2 * NODES + k, 2 * NODES + l)] -= weight * other / lambda;
             }

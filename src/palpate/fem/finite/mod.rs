@@ -17,7 +17,7 @@ use std::ops::Range;
 
 use nalgebra::Vector2;
 
-use self::contact::{Patch, Place, Settled};
+use self::contact::{Patch, Settled};
 use self::system::{Equations, System};
 use super::field::FieldCheck;
 use super::mesh::Mesh;
@@ -25,6 +25,7 @@ use super::{FemError, Pose};
 use crate::force::Force;
 use crate::phantom::Phantom;
 
+pub(super) use contact::Place;
 pub use contact::{Friction, Touch};
 pub use law::name as law_of;
 
@@ -129,6 +130,18 @@ impl FiniteModel {
     ) -> [f64; 4] {
         self.system
             .stress(&equilibrium.state, element, at, gradient)
+    }
+
+    /// The same gel under a probe whose nodes stick and slip as the path leads them.
+    pub fn along_path(&self) -> FiniteModel {
+        let friction = match self.friction {
+            Friction::Steady(mu) => Friction::Path(mu),
+            other => other,
+        };
+        FiniteModel {
+            friction,
+            ..self.clone()
+        }
     }
 
     /// Leads the probe from pose to pose.

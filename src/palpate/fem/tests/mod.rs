@@ -8,6 +8,7 @@ mod element;
 mod map;
 mod mesh;
 mod supports;
+mod vtu;
 
 use super::{Contact, MESH_SIZE, Model, Pose};
 use crate::phantom::tests::{disc, ellipse, polygon};

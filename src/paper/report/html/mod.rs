@@ -169,19 +169,20 @@ fn fate(of: &Conclusion) -> &'static str {
     }
 }
 
-/// To which depth of the probe the maps of one theory serve on a gel of another, in words.
+/// To which depth of the probe each map of one theory serves on a gel of another, in words.
 fn serving(on: &TheoryFindings, of: &TheoryFindings) -> String {
-    let first = on.templates.iter().position(|at| !at.serves);
-    let how_far = match (first, &on.templates[..]) {
-        (_, []) | (Some(0), _) => "at no depth of this run".into(),
-        (None, _) => "at every depth of this run".into(),
-        (Some(next), at) => format!(
-            "to a depth of {} mm",
-            text::millimetres(at[next - 1].depth_m)
-        ),
-    };
+    let each = on.templates.iter().map(|template| {
+        let first = template.at.iter().position(|at| !at.serves);
+        let how_far = match (first, &template.at[..]) {
+            (_, []) | (Some(0), _) => "at no depth".into(),
+            (None, _) => "at every depth".into(),
+            (Some(next), at) => format!("to {} mm", text::millimetres(at[next - 1].depth_m)),
+        };
+        format!("{} {how_far}", template.name)
+    });
+    let each = text::joined(each, ", ");
     text::prose(format!(
-        "On a gel of {}, the maps of {} serve {how_far}.",
+        "On a gel of {}, the maps of {} serve: {each}.",
         on.name, of.name
     ))
 }
