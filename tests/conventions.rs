@@ -35,7 +35,7 @@ const UNITS: [&str; 6] = ["mm", "mm-s", "kpa", "us", "n", "s"];
 const NO_OTHER_UNIT: &str = "\
     allowed-misses allowed-run bank columns condition confidence-percent config contact criterion cycles \
     device figure format friction from gel-uncertainty inclusion journal junit known layer map max-false-alarm max-force max-miss model \
-    noise note observer only out percentile phantom pid prior prior-h1 record reference reference-sweep replay \
+    noise note observer only out percentile phantom pid prior prior-h1 pvd record reference reference-sweep replay \
     samples seconds seed serial shard simulations skip-rows soak strain study subject sure trials uncertainty-out vectors vid vtu";
 
 // Verifies: CON-002.

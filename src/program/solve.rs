@@ -42,7 +42,7 @@ pub struct SolveArguments {
     /// Writes the deformed mesh with stresses for ParaView; single pose only
     #[arg(long, value_name = "FILE")]
     vtu: Option<PathBuf>,
-    /// Leads the probe down at the first lateral position, then through the others at the last depth; nodes stick and slip
+    /// Leads the probe down at the first lateral position, then to the right at the last depth; nodes stick and slip
     #[arg(long, conflicts_with_all = ["certify", "vtu"])]
     path: bool,
     /// Writes the deformed mesh of each pose of the path for ParaView

@@ -109,10 +109,10 @@ impl fmt::Display for FemError {
                 )
             }
             FemError::NoConvergence { pose, iterations } => {
-                let (depth, lateral) = (pose.depth * 1e3, pose.lateral * 1e3);
+                let [depth, lateral] = [pose.depth, pose.lateral].map(|length| 1e3 * length);
                 write!(
                     f,
-                    "contact at depth {depth} mm, lateral {lateral} mm did not converge in {iterations} iterations"
+                    "contact at depth {depth:.3} mm, lateral {lateral:.3} mm did not converge in {iterations} iterations; try smaller depths or another mesh size"
                 )
             }
             FemError::OutOfMemory => f.write_str("out of memory"),

@@ -97,7 +97,7 @@ pub fn percent(probability: impl Borrow<f64>) -> String {
     } else if probability < 1.0 && percent >= 99.95 {
         "> 99.9 %".into()
     } else {
-        format!("{percent:.1} %")
+        format!("{} %", fixed(percent, 1))
     }
 }
 

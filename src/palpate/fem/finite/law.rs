@@ -35,7 +35,7 @@ pub fn name(phantom: &Phantom) -> String {
 
 /// The constants of a law, Pa.
 ///
-/// Implements: FIN-001, FIN-014.
+/// Implements: FIN-001.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Law {
     lambda: f64,
@@ -43,12 +43,38 @@ pub(super) struct Law {
     c20: f64,
     fibre_modulus: f64,
     fibres: Vector2<f64>,
-    /// What each point asks of ln J = p/λ by itself, Pa.
-    stabilising: f64,
 }
 
-/// [`Law::stabilising`] over μ, and over λ at the most.
-const STABILISING: [f64; 2] = [3.0, 0.5];
+/// p ln J − p²/(2λ) + α r²/2 with r = ln J − p/λ and α = p²/(4μ) under tension, 0 else; and its derivatives by ln J and p.
+///
+/// Implements: FIN-014.
+struct Volumetric {
+    energy: f64,
+    by_ln_det: f64,
+    by_pressure: f64,
+    by_ln_det_twice: f64,
+    by_both: f64,
+    by_pressure_twice: f64,
+}
+
+impl Volumetric {
+    fn new(ln_det: f64, pressure: f64, (lambda, mu): (f64, f64)) -> Volumetric {
+        let rest = ln_det - pressure / lambda;
+        let tension = pressure.max(0.0);
+        let alpha = tension * tension / (4.0 * mu);
+        let slope = tension / (2.0 * mu);
+        let turn = if pressure > 0.0 { 0.5 / mu } else { 0.0 };
+        Volumetric {
+            energy: pressure * (ln_det - pressure / (2.0 * lambda)) + 0.5 * alpha * rest * rest,
+            by_ln_det: pressure + alpha * rest,
+            by_pressure: rest * (1.0 - alpha / lambda + 0.5 * slope * rest),
+            by_ln_det_twice: alpha,
+            by_both: 1.0 - alpha / lambda + slope * rest,
+            by_pressure_twice: (alpha / lambda - 1.0 - 2.0 * slope * rest) / lambda
+                + 0.5 * turn * rest * rest,
+        }
+    }
+}
 
 impl From<&Material> for Law {
     fn from(material: &Material) -> Law {
@@ -59,7 +85,6 @@ impl From<&Material> for Law {
             c20: material.yeoh_c20,
             fibre_modulus: material.fibre_modulus,
             fibres: material.fibre_direction().into(),
-            stabilising: (STABILISING[0] * mu).min(STABILISING[1] * lambda),
         }
     }
 }
@@ -120,7 +145,7 @@ impl Law {
     /// With the spatial gradients g_a = F⁻ᵀ∇N_a, q_a = F∇N_a, f_a = ∇N_a·a, c = p − μ, m = μ + 4 C₂₀ (I₁ − 3) and
     /// t = E_f (I₄ − 1)/2, the force on node a is m q_a + t f_a F a + c g_a, and its derivative by the displacement of node b
     /// (m ∇N_a·∇N_b + t f_a f_b) I + 8 C₂₀ q_a q_bᵀ + E_f f_a f_b (F a)(F a)ᵀ − c g_b g_aᵀ + α g_a g_bᵀ, where c also has
-    /// α (ln J − p/λ). Turned about an axis, with h_a = N_a/X and
+    /// α (ln J − p/λ) under tension. Turned about an axis, with h_a = N_a/X and
     /// the stretch s of the circle, q_a grows by s h_a e_x, the g_a of the force by (h_a/s) e_x, and the derivative by
     /// h_a h_b (m − c/s²) e_x e_xᵀ.
     pub(super) fn element(
@@ -181,11 +206,7 @@ impl Law {
         pressure: f64,
     ) {
         let Law {
-            lambda,
-            mu,
-            c20,
-            stabilising,
-            ..
+            lambda, mu, c20, ..
         } = *self;
         let volume = point.volume;
         let [[xx, yx], [xy, yy]] = gradient.data.0;
@@ -202,12 +223,9 @@ impl Law {
         let stretch = stretched.norm_squared() - 1.0;
         let isochoric = 0.5 * mu * (growth - 2.0 * ln_det) + c20 * growth * growth;
         let fibrous = self.fibre_modulus / 8.0 * stretch * stretch;
-        let off = ln_det - pressure / lambda;
-        let share = 1.0 - stabilising / lambda;
-        let volumetric =
-            pressure * (ln_det - pressure / (2.0 * lambda)) + 0.5 * stabilising * off * off;
-        element.energy += volume * (isochoric + fibrous + volumetric);
-        let excess = volume * (pressure + stabilising * off - mu);
+        let volumetric = Volumetric::new(ln_det, pressure, (lambda, mu));
+        element.energy += volume * (isochoric + fibrous + volumetric.energy);
+        let excess = volume * (volumetric.by_ln_det - mu);
         let stiff = volume * (mu + 4.0 * c20 * growth);
         let tension = volume * self.fibre_modulus * stretch / 2.0;
         for b in 0..NODES {
@@ -225,21 +243,24 @@ impl Law {
                     + moved.column(a) * (8.0 * volume * c20) * moved_b.transpose()
                     + stretched * (volume * self.fibre_modulus * both) * stretched.transpose()
                     - spatial_b * excess * spatial.column(a).transpose()
-                    + dilation.column(a) * (volume * stabilising) * dilation_b.transpose();
+                    + dilation.column(a)
+                        * (volume * volumetric.by_ln_det_twice)
+                        * dilation_b.transpose();
                 let circles = point.hoop[a] * point.hoop[b];
                 block[(0, 0)] += circles * (stiff - excess / (hoop * hoop));
             }
             for (k, shape) in point.pressures.iter().enumerate() {
                 let column = 2 * NODES + k;
                 let mut block = element.tangent.fixed_view_mut::<2, 1>(2 * b, column);
-                block += dilation_b * (share * shape * point.volume);
+                block += dilation_b * (volume * shape * volumetric.by_both);
             }
         }
         for (k, shape) in point.pressures.iter().enumerate() {
-            let weight = share * shape * point.volume;
-            element.force[2 * NODES + k] += weight * off;
+            let weight = volume * shape;
+            element.force[2 * NODES + k] += weight * volumetric.by_pressure;
             for (l, other) in point.pressures.iter().enumerate().skip(k) {
-                element.tangent[(2 * NODES + k, 2 * NODES + l)] -= weight * other / lambda;
+                element.tangent[(2 * NODES + k, 2 * NODES + l)] +=
+                    weight * other * volumetric.by_pressure_twice;
             }
         }
     }

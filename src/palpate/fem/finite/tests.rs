@@ -87,14 +87,17 @@ const BENT: [[f64; 2]; NODES] = [
 // Verifies: FIN-003.
 #[test]
 fn forces_and_tangent_are_derivatives_of_the_energy() {
-    slopes(&BENT, &long(0.03));
-    // Turned about the axis, beside which the element stands.
-    let turned = BENT.map(|[x, y]| [x + 0.5e-3, y]);
-    slopes(&turned, &sphere(3e-3, 15e-3));
+    // Under pressure, in part under tension, and under tension alone.
+    for mean in [-4e3, 0.0, 4e3] {
+        slopes(&BENT, &long(0.03), mean);
+        // Turned about the axis, beside which the element stands.
+        let turned = BENT.map(|[x, y]| [x + 0.5e-3, y]);
+        slopes(&turned, &sphere(3e-3, 15e-3), mean);
+    }
 }
 
 /// Checks forces and tangent of an element of this kind of phantom.
-fn slopes(positions: &[[f64; 2]], phantom: &Phantom) {
+fn slopes(positions: &[[f64; 2]], phantom: &Phantom, mean: f64) {
     let points = points(positions, phantom).unwrap();
     let law = Law::from(&rich());
     // Displacements of some tenths of the element's size, pressures of the modulus.
@@ -103,7 +106,7 @@ fn slopes(positions: &[[f64; 2]], phantom: &Phantom) {
         if k < 2 * NODES {
             2e-4 * varied
         } else {
-            2e3 * varied
+            mean + 2e3 * varied
         }
     });
     let here = law.element(&points, &state).unwrap();

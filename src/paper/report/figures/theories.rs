@@ -54,11 +54,10 @@ fn words(found: &Findings) -> Words {
     });
     [
         format!("Forces without inclusion at depth {depth} mm, by the theory of the gel"),
-        format!(
-            "Force on the whole probe against its lateral position, one curve for each theory. The paper has no such figure; it names \
-             large deformation and friction as what its model leaves out. With friction the probe slides to the right and drags the gel \
-             along, so that the lateral force is negative. Depth {depth} mm."
-        ),
+        "Force on the whole probe against its lateral position, one curve for each theory. The paper has no such figure; it names \
+         large deformation and friction as what its model leaves out. With friction the probe slides to the right and drags the gel \
+         along, so that the lateral force is negative."
+            .into(),
         format!(
             "Two line charts of normal and lateral force against lateral position. Normal force at x = 0: {}.",
             joined(levels, "; ")
