@@ -10,7 +10,7 @@ use super::error::refuse;
 use super::numbers::{List, contact, friction, length, positions};
 use super::output::{print, write};
 use super::progress::{bar, tell_large_mesh};
-use palpate::decimal::mm;
+use palpate::decimal::{format_scaled, mm};
 use palpate::fem::certify::certified_map;
 use palpate::fem::{Contact, MESH_SIZE, Model, Pose, PoseSolution, SMALL_STRAIN_LIMIT};
 use palpate::force_map::{ForceMap, SmallestDet};
@@ -185,8 +185,8 @@ fn along_path(model: &Model, arguments: &SolveArguments) -> Result<(), CliError>
         _ => {
             let row = |of: &PoseSolution| {
                 let (pose, force) = (of.pose, of.force);
-                let place = format!("{},{}", mm(pose.lateral), mm(pose.depth));
-                format!("{place},{},{}\n", force.normal, force.lateral)
+                let [x, d] = [pose.lateral, pose.depth].map(|length| format_scaled(length, 3));
+                format!("{x},{d},{},{}\n", force.normal, force.lateral)
             };
             let rows: String = path.iter().map(row).collect();
             format!("lateral_mm,depth_mm,normal_force_n,lateral_force_n\n{rows}")
