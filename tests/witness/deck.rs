@@ -3,12 +3,13 @@
 //! The steps are geometrically linear, as our model is, but CalculiX finds a node's gap and the direction of its
 //! force on the deformed mesh in every iteration, as `deformed-normal` does. Contact is node to surface: with
 //! surface to surface the forces depend on the size of the increments, the lateral ones by tens of per cent.
+//! At finite strain the steps are geometrically nonlinear, and the law is FIN-001's, made of CalculiX's terms for foam.
 
 use std::fmt::Write;
 
 use palpate::fem::Mesh;
 use palpate::fem::mesh::Region;
-use palpate::phantom::Phantom;
+use palpate::phantom::{Material, Phantom, Strain};
 
 use super::material;
 
@@ -41,13 +42,10 @@ pub fn deck(phantom: &Phantom, mesh: &Mesh, lateral: f64, depths: &[f64]) -> Str
                 writeln!(deck, "{}, {}", element + 1, nodes.join(", ")).unwrap();
             }
         }
-        let material = material(phantom, region);
         write!(
             deck,
-            "*MATERIAL, NAME={name}\n*ELASTIC\n{:e}, {:e}\n\
-             *SOLID SECTION, ELSET={name}, MATERIAL={name}\n{:e}\n",
-            material.youngs_modulus,
-            material.poisson_ratio,
+            "*MATERIAL, NAME={name}\n{}*SOLID SECTION, ELSET={name}, MATERIAL={name}\n{:e}\n",
+            law(phantom.strain(), &material(phantom, region)),
             phantom.probe().length
         )
         .unwrap();
@@ -67,23 +65,59 @@ pub fn deck(phantom: &Phantom, mesh: &Mesh, lateral: f64, depths: &[f64]) -> Str
         }
     }
     probe(&mut deck, phantom, mesh, lateral);
-    write!(
-        deck,
+    deck += &contact();
+    deck += "*BOUNDARY\nFIXED, 1, 2\n";
+    deck += &steps(phantom, depths, INCREMENT);
+    deck
+}
+
+/// The surfaces OUTER and ARC keep apart, without friction.
+fn contact() -> String {
+    format!(
         "*SURFACE INTERACTION, NAME=HARD\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{PENALTY:e}\n\
-         *CONTACT PAIR, INTERACTION=HARD, TYPE=NODE TO SURFACE\nOUTER, ARC\n*BOUNDARY\nFIXED, 1, 2\n"
+         *CONTACT PAIR, INTERACTION=HARD, TYPE=NODE TO SURFACE\nOUTER, ARC\n"
     )
-    .unwrap();
-    for depth in depths {
-        write!(
-            deck,
-            "*STEP, INC=1000\n*STATIC\n{INCREMENT}, 1., 1e-6, {INCREMENT}\n\
+}
+
+/// A step to each depth, m, of increments of that part of it at most.
+fn steps(phantom: &Phantom, depths: &[f64], increment: f64) -> String {
+    let nonlinear = match phantom.strain() {
+        Strain::Small => "",
+        Strain::Finite => ", NLGEOM",
+    };
+    let step = |depth: &f64| {
+        format!(
+            "*STEP, INC=1000{nonlinear}\n*STATIC\n{increment}, 1., 1e-6, {increment}\n\
              *BOUNDARY\nPROBE, 1, 1, 0.\nPROBE, 2, 2, {:e}\n\
              *NODE PRINT, NSET=PROBE, TOTALS=ONLY\nRF\n*END STEP\n",
             -depth
         )
-        .unwrap();
+    };
+    depths.iter().map(step).collect()
+}
+
+/// Hooke's law at small strain, FIN-001 without its additions at finite strain.
+///
+/// Storåkers's foam is Σᵢ 2μᵢ/αᵢ² [λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3 + (J^(−αᵢβᵢ) − 1)/βᵢ], given by μᵢ, αᵢ and νᵢ = βᵢ/(1 + 2βᵢ). With
+/// α₁ = 2 and β₁ = 0 the first term is μ₁/2 (I₁ − 3 − 2 ln J). With α₂ = −α₃ = k/β, μ₂ = μ₃ = λ/(4β) and one large β, the others
+/// are λ/2 (2/k sinh(½ k ln J))² and λ/(2β) Σ (ln λⱼ)². The first of these two is λ/2 (ln J)² but for a part (k ln J)²/12, which
+/// k = 0.05 keeps below 10⁻⁴ down to J = 0.5; the second is a shear modulus of 5·10⁻⁵ μ at ν = 0.49.
+pub fn law(strain: Strain, material: &Material) -> String {
+    let (modulus, poisson_ratio) = (material.youngs_modulus, material.poisson_ratio);
+    if strain == Strain::Small {
+        return format!("*ELASTIC\n{modulus:e}, {poisson_ratio:e}\n");
     }
-    deck
+    let shear = modulus / (2.0 * (1.0 + poisson_ratio));
+    let lambda = 2.0 * shear * poisson_ratio / (1.0 - 2.0 * poisson_ratio);
+    let nearly_half = 0.4999995;
+    let beta = nearly_half / (1.0 - 2.0 * nearly_half);
+    let (volumetric, exponent) = (lambda / (4.0 * beta), 0.05 / beta);
+    // CalculiX reads 20 characters of a number.
+    format!(
+        "*HYPERFOAM, N=3\n{shear:.12e}, 2., {volumetric:.12e}, {exponent:.12e}, {volumetric:.12e}, {:.11e}, 0., {nearly_half}\n\
+         {nearly_half}\n",
+        -exponent
+    )
 }
 
 /// The probe: one row of quadrilaterals with 8 nodes, every one of them moved by hand, so that it is rigid.

@@ -35,7 +35,7 @@ pub fn name(phantom: &Phantom) -> String {
 
 /// The constants of a law, Pa.
 ///
-/// Implements: FIN-001.
+/// Implements: FIN-001, FIN-013.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Law {
     lambda: f64,
