@@ -4,8 +4,10 @@
 
 mod calculix;
 mod deck;
+mod extruded;
 pub mod present;
 mod scikit_fem;
+mod three_dimensions;
 
 use std::io::ErrorKind;
 use std::process::Command;

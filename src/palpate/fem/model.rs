@@ -143,7 +143,7 @@ impl Model {
     /// # Errors
     /// [`FemError::Pose`] where the probe cannot stand, [`FemError::NoConvergence`].
     ///
-    /// Implements: PHA-011, FEM-020, FEM-021, FEM-080.
+    /// Implements: PHA-011, FEM-020, FEM-021, FEM-080, FEM-083.
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
         self.check_pose(pose)?;
         // Where the phantom is symmetric the right half stands for both, so that mirrored poses have mirrored forces to the bit.
