@@ -67,7 +67,7 @@ pub fn deck(phantom: &Phantom, mesh: &Mesh, lateral: f64, depths: &[f64]) -> Str
     probe(&mut deck, phantom, mesh, lateral);
     deck += &contact();
     deck += "*BOUNDARY\nFIXED, 1, 2\n";
-    deck += &steps(phantom, depths, INCREMENT);
+    deck += &steps(phantom, depths);
     deck
 }
 
@@ -79,15 +79,15 @@ fn contact() -> String {
     )
 }
 
-/// A step to each depth, m, of increments of that part of it at most.
-fn steps(phantom: &Phantom, depths: &[f64], increment: f64) -> String {
+/// A step to each depth, m.
+fn steps(phantom: &Phantom, depths: &[f64]) -> String {
     let nonlinear = match phantom.strain() {
         Strain::Small => "",
         Strain::Finite => ", NLGEOM",
     };
     let step = |depth: &f64| {
         format!(
-            "*STEP, INC=1000{nonlinear}\n*STATIC\n{increment}, 1., 1e-6, {increment}\n\
+            "*STEP, INC=1000{nonlinear}\n*STATIC\n{INCREMENT}, 1., 1e-6, {INCREMENT}\n\
              *BOUNDARY\nPROBE, 1, 1, 0.\nPROBE, 2, 2, {:e}\n\
              *NODE PRINT, NSET=PROBE, TOTALS=ONLY\nRF\n*END STEP\n",
             -depth

@@ -70,14 +70,15 @@ impl Quarter<'_> {
         let place = |(node, level): (u32, usize)| {
             let ([x, y], z) = (self.mesh.nodes[node as usize], self.z(level));
             let number = self.node(node, level);
-            let below = self.ends == Ends::Plane || !self.is_beyond(z - 1e-9);
+            let below = self.ends == Ends::Plane || z <= self.end() + 1e-9;
             (y == 0.0 && x <= reach && below).then_some(Place { number, x })
         };
         self.nodes().into_iter().filter_map(place).collect()
     }
 
-    fn is_beyond(&self, z: f64) -> bool {
-        z >= 0.5 * self.phantom.probe().length - 1e-9
+    /// Where probe and inclusion end, m.
+    fn end(&self) -> f64 {
+        0.5 * self.phantom.probe().length
     }
 
     fn z(&self, level: usize) -> f64 {
@@ -99,7 +100,7 @@ impl Quarter<'_> {
 
     /// What a slice of an element is made of: beyond the end of an inclusion it is gel.
     fn region(&self, element: usize, slice: usize) -> Region {
-        let beyond = self.ends == Ends::Fixed && self.is_beyond(self.cuts[slice]);
+        let beyond = self.ends == Ends::Fixed && self.cuts[slice] >= self.end() - 1e-9;
         match self.mesh.regions[element] {
             Region::Inclusion(_) if beyond => Region::Layer(1),
             region => region,
