@@ -17,7 +17,7 @@ use std::ops::Range;
 
 use nalgebra::Vector2;
 
-use self::contact::{Patch, Settled};
+use self::contact::Patch;
 use self::system::{Equations, System};
 use super::field::FieldCheck;
 use super::mesh::Mesh;
@@ -76,6 +76,18 @@ pub struct Equilibrium {
     /// Displacement of each node of the mesh, m.
     pub displacements: Vec<[f64; 2]>,
     state: Vec<f64>,
+}
+
+/// The gel between two of Newton's iterations.
+struct Trial {
+    state: Vec<f64>,
+    equations: Equations,
+    /// As in [`Equilibrium`].
+    touches: Vec<Touch>,
+    /// The force on the gel at each node at the surface, N.
+    forces: Vec<[f64; 2]>,
+    /// Where each node at the surface was on the probe before the step: its arc from the probe's lowest point, m.
+    arcs: Vec<f64>,
 }
 
 impl FiniteModel {
@@ -252,69 +264,87 @@ impl FiniteModel {
     fn solve(
         &self,
         from: &Equilibrium,
-        mut state: Vec<f64>,
+        state: Vec<f64>,
         pose: Pose,
     ) -> Result<Result<Equilibrium, usize>, FemError> {
-        let (mut touches, mut pushed) = (from.touches.clone(), from.forces.clone());
-        let arcs: Vec<f64> = self
-            .places(&from.state, from.pose)
-            .iter()
-            .map(|p| p.arc)
-            .collect();
-        let Some(mut equations) = self.system.equations(&state) else {
+        let Some(mut trial) = self.trial(from, state) else {
             return Ok(Err(0));
         };
         for iteration in 0..MOST_ITERATIONS {
-            let (out, contact) = self.out_of_balance(&equations, &pushed);
+            let (out, contact) = self.out_of_balance(&trial.equations, &trial.forces);
             if iteration > 0 && out <= BALANCE[0] * contact + BALANCE[1] {
-                return Ok(self
-                    .accept(pose, state, &equations, touches, pushed, iteration)
-                    .ok_or(iteration));
+                return Ok(self.accept(pose, trial, iteration).ok_or(iteration));
             }
-            let under = self.under(&state, pose);
-            let first = self.system.unknown(self.mesh.surface[under.start], 0);
-            let unknowns = first.map(|first| first..first + 2 * under.len());
-            let Some(unknowns) = unknowns else {
-                return Ok(Err(iteration));
-            };
-            let Some(condensed) = self.system.condense(&equations, unknowns.clone())? else {
-                return Ok(Err(iteration));
-            };
-            let positions: Vec<[f64; 2]> = under
-                .clone()
-                .map(|at| self.mesh.nodes[self.mesh.surface[at]])
-                .collect();
-            let patch = Patch {
-                pose,
-                radius: self.phantom.probe().radius,
-                friction: self.friction,
-                positions: &positions,
-                displacements: &state[unknowns.clone()],
-                forces: &condensed.forces,
-                stiffness: &condensed.stiffness,
-                arcs: &arcs[under.clone()],
-            };
-            let Some(settled) = patch.settle(&touches[under.clone()]) else {
-                return Ok(Err(iteration));
-            };
-            let moved = settled.displacements.iter().zip(&state[unknowns.clone()]);
-            let moved: Vec<f64> = moved.map(|(to, from)| to - from).collect();
-            let changes = condensed.changes(&equations, &moved, &settled.forces)?;
-            let Some(next) = self.admissible(&mut state, &changes) else {
-                return Ok(Err(iteration));
-            };
-            equations = next;
-            let Settled {
-                touches: now,
-                forces,
-                ..
-            } = settled;
-            touches.fill(Touch::Apart);
-            pushed.fill([0.0; 2]);
-            touches[under.clone()].copy_from_slice(&now);
-            pushed[under].copy_from_slice(forces.as_chunks().0);
+            match self.iterate(trial, pose)? {
+                Some(next) => trial = next,
+                None => return Ok(Err(iteration)),
+            }
         }
         Ok(Err(MOST_ITERATIONS))
+    }
+
+    /// Where the iterations begin: at `state`, touched as the pose before is.
+    fn trial(&self, from: &Equilibrium, state: Vec<f64>) -> Option<Trial> {
+        let places = self.places(&from.state, from.pose);
+        Some(Trial {
+            equations: self.system.equations(&state)?,
+            state,
+            touches: from.touches.clone(),
+            forces: from.forces.clone(),
+            arcs: places.iter().map(|place| place.arc).collect(),
+        })
+    }
+
+    /// One of Newton's iterations; `None` where it leads nowhere.
+    fn iterate(&self, trial: Trial, pose: Pose) -> Result<Option<Trial>, FemError> {
+        let Trial {
+            mut state,
+            equations,
+            mut touches,
+            mut forces,
+            arcs,
+        } = trial;
+        let under = self.under(&state, pose);
+        let Some(first) = self.system.unknown(self.mesh.surface[under.start], 0) else {
+            return Ok(None);
+        };
+        let unknowns = first..first + 2 * under.len();
+        let Some(condensed) = self.system.condense(&equations, unknowns.clone())? else {
+            return Ok(None);
+        };
+        let position = |&node: &usize| self.mesh.nodes[node];
+        let positions: Vec<[f64; 2]> = self.mesh.surface[under.clone()]
+            .iter()
+            .map(position)
+            .collect();
+        let patch = Patch {
+            pose,
+            radius: self.phantom.probe().radius,
+            friction: self.friction,
+            positions: &positions,
+            displacements: &state[unknowns.clone()],
+            forces: &condensed.forces,
+            stiffness: &condensed.stiffness,
+            arcs: &arcs[under.clone()],
+        };
+        let Some(settled) = patch.settle(&touches[under.clone()]) else {
+            return Ok(None);
+        };
+        let moved = settled.displacements.iter().zip(&state[unknowns]);
+        let moved: Vec<f64> = moved.map(|(to, from)| to - from).collect();
+        let changes = condensed.changes(&equations, &moved, &settled.forces)?;
+        touches.fill(Touch::Apart);
+        forces.fill([0.0; 2]);
+        touches[under.clone()].copy_from_slice(&settled.touches);
+        forces[under].copy_from_slice(settled.forces.as_chunks().0);
+        let equations = self.admissible(&mut state, &changes);
+        Ok(equations.map(|equations| Trial {
+            state,
+            equations,
+            touches,
+            forces,
+            arcs,
+        }))
     }
 
     /// Adds the changes to the state, halved until no element is turned inside out.
@@ -384,20 +414,19 @@ impl FiniteModel {
     /// What the solution is; `None` where it folds, or passes through the probe, or keeps too little of some point's area.
     ///
     /// Implements: FIN-007.
-    fn accept(
-        &self,
-        pose: Pose,
-        state: Vec<f64>,
-        equations: &Equations,
-        touches: Vec<Touch>,
-        forces: Vec<[f64; 2]>,
-        iterations: usize,
-    ) -> Option<Equilibrium> {
+    fn accept(&self, pose: Pose, trial: Trial, iterations: usize) -> Option<Equilibrium> {
+        let Trial {
+            state,
+            equations,
+            touches,
+            forces,
+            ..
+        } = trial;
         let places = self.places(&state, pose);
         let penetration = places
             .iter()
             .fold(0.0, |deepest: f64, place| deepest.max(-place.gap));
-        let (out, contact) = self.out_of_balance(equations, &forces);
+        let (out, contact) = self.out_of_balance(&equations, &forces);
         let displacements: Vec<[f64; 2]> = (0..self.mesh.nodes.len())
             .map(|node| self.system.displacement(&state, node))
             .collect();
