@@ -126,21 +126,53 @@ impl Config {
     /// # Errors
     /// A phantom that is refused, or whose probe cannot reach one of the poses; with file, line and key.
     pub fn read_phantoms(&self) -> Result<Vec<Phantom>, CliError> {
-        let keys = (0..self.phantoms.len()).map(|at| format!("phantoms[{at}]"));
-        let keys = std::iter::once("reference".into()).chain(keys);
-        let names = std::iter::once(&self.reference).chain(&self.phantoms);
         let read = |(key, name): (String, &Spanned<String>)| {
             let read = self.read_phantom(name.as_ref());
             read.map_err(|error| match error {
-                CliError::Usage(message) if !name.span().is_empty() => {
-                    let [file, text] = &self.source;
-                    let line = line_of(text, name.span().start);
-                    CliError::Usage(format!("{file}:{line}: {key}: {message}"))
-                }
+                CliError::Usage(message) => self.refused(&key, name, &message),
                 other => other,
             })
         };
-        keys.zip(names).map(read).collect()
+        self.names().map(read).collect()
+    }
+
+    /// Refuses what [`Config::read_phantoms`] gives where a phantom has another theory than the reference: their difference would be
+    /// no inclusion's.
+    ///
+    /// Implements: CLI-031.
+    pub fn check_theory(&self, phantoms: &[Phantom]) -> Result<(), CliError> {
+        let theory = |phantom: &Phantom| {
+            let friction = phantom.probe().friction;
+            format!("strain = \"{}\" with friction {friction}", phantom.strain())
+        };
+        let expected = theory(&phantoms[0]);
+        for ((key, name), phantom) in self.names().zip(phantoms) {
+            let found = theory(phantom);
+            if found != expected {
+                let message = format!(
+                    "{found}, but the reference has {expected}; give one that has the same as reference"
+                );
+                return Err(self.refused(&key, name, &message));
+            }
+        }
+        Ok(())
+    }
+
+    /// The phantoms' keys and names, the reference first.
+    fn names(&self) -> impl Iterator<Item = (String, &Spanned<String>)> {
+        let keys = (0..self.phantoms.len()).map(|at| format!("phantoms[{at}]"));
+        let keys = std::iter::once("reference".into()).chain(keys);
+        keys.zip(std::iter::once(&self.reference).chain(&self.phantoms))
+    }
+
+    /// The refusal of the phantom under `key`, with file and line if it stands in one.
+    fn refused(&self, key: &str, name: &Spanned<String>, message: &str) -> CliError {
+        let [file, text] = &self.source;
+        let place = match name.span() {
+            span if span.is_empty() => String::new(),
+            span => format!("{file}:{}: {key}: ", line_of(text, span.start)),
+        };
+        CliError::Usage(place + message)
     }
 
     /// The path of a file that the configuration names.

@@ -54,6 +54,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let phantoms = config.read_phantoms()?;
     let phantoms = phantoms.iter().map(|phantom| arguments.theory.of(phantom));
     let phantoms = phantoms.collect::<Result<Vec<_>, _>>()?;
+    config.check_theory(&phantoms)?;
     let measured = config.measured.iter();
     let measured = measured.map(|path| measured_map(&config.file(path), &config.columns));
     let measured = measured.collect::<Result<_, _>>()?;

@@ -59,6 +59,7 @@ pub fn read_plan(path: &Path) -> Result<StudyPlan, CliError> {
         return Err(refused(found.into()));
     }
     let mut phantoms = run.read_phantoms()?;
+    run.check_theory(&phantoms)?;
     for (at, input) in file.inputs.iter_mut().enumerate() {
         if let Distribution::Empirical { values, file } = &mut input.distribution
             && let Some(table) = file.take()
