@@ -140,9 +140,14 @@ fn forces_come_from_another_program_with_its_band_and_ours() {
     }
     let data = json("vectors/probe_force/forces.json");
     let poses = data["poses"].as_array().unwrap();
-    let mut compared = 0;
+    let (mut compared, mut finite) = (0, 0);
     for case in cases("probe_force") {
         if case["ok"].is_null() {
+            continue;
+        }
+        if case["args"]["strain"] == "finite" {
+            finite += 1;
+            of_the_table(&case);
             continue;
         }
         let mm = |key: &str| case["args"][key].as_f64().unwrap().abs() * 1e3;
@@ -184,5 +189,29 @@ fn forces_come_from_another_program_with_its_band_and_ours() {
         }
         compared += 1;
     }
-    assert!(compared >= 80, "{compared}");
+    assert!(compared >= 80 && finite == 8, "{compared} {finite}");
+}
+
+/// Checks a force at finite strain: the other program's of `tables/finite_strain.txt`, within 0.5 % and 3 mN.
+fn of_the_table(case: &Value) {
+    let number = |part: &str, key: &str| case[part][key].as_f64().unwrap();
+    let lateral = 1e3 * number("args", "lateral_m");
+    let disc = case["args"]["phantom"].as_str().unwrap();
+    let start = format!("hyperelastic {disc} {lateral} ");
+    let mut rows = include_str!("tables/finite_strain.txt").lines();
+    let row = rows.find_map(|row| row.strip_prefix(&start)).unwrap();
+    let forces: Vec<f64> = row.split(' ').map(|force| force.parse().unwrap()).collect();
+    let expected = [
+        ("lateral_force_n", forces[0], 3e-3),
+        ("normal_force_n", forces[1], 5e-3 * forces[1]),
+    ];
+    for (key, force, tolerance) in expected {
+        assert_eq!(number("ok", key), force, "{}", case["id"]);
+        let ratio = case["tolerance"][key]["absolute"].as_f64().unwrap() / tolerance;
+        assert!(
+            (1.0 - 1e-12..1.1).contains(&ratio),
+            "{}: {ratio}",
+            case["id"]
+        );
+    }
 }

@@ -201,6 +201,7 @@ BUGS = {
     "rule_of_degree_2": ("a quadrature of three points", "exact for straight sides; on curved ones another matrix"),
     "area_twice": ("weights that add up to 1 for the parent triangle of area ½", ""),
     "per_length": ("the force per metre of the probe", "forces are totals for the probe's 30 mm"),
+    "small_strain": ("the force at small strain, where finite strain was asked for", ""),
     "half_force": ("half of the probe, by symmetry", ""),
     "lateral_sign": ("the lateral force on the gel, not on the probe", ""),
     "mirror_ignored": ("the mirror pose's lateral force without its sign", "F_x(−x) = −F_x(x)"),

@@ -1,4 +1,5 @@
-"""Forces on the probe (VEC-011): from probe_force/forces.json, which probe_force.py there computes with scikit-fem.
+"""Forces on the probe (VEC-011): from probe_force/forces.json, which probe_force.py there computes with scikit-fem; at finite
+strain from tests/tables/finite_strain.txt.
 
 Implements: VEC-011.
 """
@@ -10,12 +11,15 @@ from pathlib import Path
 from .suite import Group, absolute, case_by_case, refuse_common, without
 
 DATA = Path(__file__).parent.parent / "probe_force" / "forces.json"
+TABLE = Path(__file__).parent.parent.parent / "tests" / "tables" / "finite_strain.txt"
 LENGTH = Fraction(30, 1000)
 CHOSEN = [
     (0.5, 0.0), (0.5, 4.0), (1.0, 2.5), (1.0, 6.0), (2.0, 0.0), (2.0, 1.0), (2.0, 4.0), (3.0, 2.5), (3.0, 10.0),
     (4.0, 0.0), (4.0, 2.5), (4.0, 6.0), (4.0, 10.0),
 ]
 MIRRORED = [(2.0, 4.0), (4.0, 2.5), (3.0, 10.0)]
+# Without friction, 4 mm deep.
+FINITE = [("none", 0.0), ("none", 4.0), ("4.6", 0.0), ("4.6", 2.5), ("4.6", -4.0), ("6.6", 0.0), ("6.6", 4.0), ("6.6", -2.5)]
 
 
 def milli(value):
@@ -53,6 +57,10 @@ def probe_force():
         (0.004, 2.5, "lateral in mm"),
     ):
         group.refuse(kind, args, "out_of_range", depth_m=depth, lateral_m=lateral)
+    group.refuse("another theory", args, "out_of_range", strain="large")
+    forces = finite_forces()
+    for name, lateral in FINITE:
+        finite_case(group, forces, poses, name, lateral)
     return group
 
 
@@ -82,6 +90,34 @@ def pose_case(group, poses, name, depth, lateral, sign):
     }
     args = {"phantom": name, "depth_m": depth / 1000, "lateral_m": sign * lateral / 1000}
     group.accept(f"phantom {name}, depth {depth} mm, lateral {sign * lateral} mm", args, ok, wrong, tolerance=limits)
+
+
+def finite_forces():
+    """Lateral and normal force, N, of the table's rows without friction at ν = 0.49, by disc and position."""
+    rows = [line.split() for line in TABLE.read_text().splitlines()]
+    rows = [row for row in rows if row[0] == "hyperelastic"]
+    return {(disc, float(x)): (Fraction(side), Fraction(normal)) for _, disc, x, side, normal in rows}
+
+
+def finite_case(group, forces, poses, name, lateral):
+    side, normal = forces[name, lateral]
+    ok = {"normal_force_n": normal, "lateral_force_n": side}
+    small = poses[name, 4.0, abs(lateral)]
+    sign = -1 if lateral < 0 else 1
+    of_small = {"normal_force_n": milli(small["normal_force_mn"]), "lateral_force_n": sign * milli(small["lateral_force_mn"])}
+    ignored = forces["none", lateral]
+    wrong = [
+        ("small_strain", of_small),
+        ("inclusion_ignored", {"normal_force_n": ignored[1], "lateral_force_n": ignored[0]}),
+        ("lateral_sign", {"lateral_force_n": -side}),
+    ]
+    reason = "both programs' meshes (finite-strain.md, Verification)"
+    limits = {
+        "normal_force_n": absolute(normal * Fraction(5, 1000), "N", "0.5 %: " + reason),
+        "lateral_force_n": absolute(Fraction(3, 1000), "N", "3 mN: " + reason),
+    }
+    args = {"phantom": name, "depth_m": 0.004, "lateral_m": lateral / 1000, "strain": "finite"}
+    group.accept(f"phantom {name} at finite strain, depth 4 mm, lateral {lateral} mm", args, ok, wrong, tolerance=limits)
 
 
 GROUPS = [probe_force]

@@ -115,8 +115,8 @@ pub const OPS: &[Op] = &[
     op!("report_encode", text => answer! { bytes: hid_report::encode(text)? }),
     op!("count_analysis", { correct: Rows, trials: Whole<1, MOST_TRIALS> } =>
         counts::analysis(&correct, trials)?),
-    op!("probe_force", { phantom: String, depth_m: f64, lateral_m: f64 }, models =>
-        probe::force(phantom, depth_m, lateral_m, models)?),
+    op!("probe_force", { phantom: String, depth_m: f64, lateral_m: f64, strain: Option<String> }, models =>
+        probe::force(phantom, depth_m, lateral_m, strain, models)?),
 ];
 
 /// The op of that name.
