@@ -1,5 +1,7 @@
 //! Gels at finite strain against another program's forces on them: `tables/finite_strain.txt`.
 
+mod downstream;
+
 use palpate::fem::finite::{FiniteModel, Friction};
 use palpate::fem::{Contact, MESH_SIZE, Mesh, Model, Pose};
 use palpate::force::Force;
@@ -131,4 +133,37 @@ fn the_whole_table_is_that_of_another_program() {
         );
         assert!(normal < 0.005 && lateral < 5e-3);
     }
+}
+
+/// `cargo nextest run -p palpate-tests --run-ignored only --release --no-capture -E 'test(a_sweep_with_friction)'`
+///
+/// Verifies: FIN-011, FIN-012.
+#[test]
+#[ignore = "slow, a minute"]
+fn a_sweep_with_friction_becomes_steady_after_2_mm() {
+    let phantom = phantom("6.6", 0.49);
+    let mesh = Mesh::new(&phantom, MESH_SIZE).unwrap();
+    let model = |friction| FiniteModel::new(&phantom, &mesh, friction).unwrap();
+    let pose = |depth: f64, lateral: f64| Pose { depth, lateral };
+    let laterals: Vec<f64> = (-20..=20).map(|at| f64::from(at) * 0.5e-3).collect();
+    let down = (1..=4).map(|k| pose(1e-3 * f64::from(k), laterals[0]));
+    let across = laterals[1..].iter().map(|&lateral| pose(DEPTH, lateral));
+    let path = model(Friction::Path(0.3));
+    let poses: Vec<Pose> = down.chain(across).collect();
+    // No step fails.
+    let there = path.path(path.untouched(laterals[0]), &poses).unwrap();
+    let steady = model(Friction::Steady(0.3));
+    let steady = steady.path(steady.untouched(laterals[0]), &poses).unwrap();
+    let off = there.iter().zip(&steady).map(|(path, steady)| {
+        let [a, b] = [path.force, steady.force];
+        (a.normal - b.normal)
+            .abs()
+            .max((a.lateral - b.lateral).abs())
+            / b.normal
+    });
+    let off: Vec<f64> = off.collect();
+    println!("{off:?}");
+    // The fourth pose is at −10 mm, and 2 mm are four steps.
+    assert!(off[7..].iter().all(|off| *off < 1e-3), "{off:?}");
+    assert!(off[3] > 0.05, "{off:?}");
 }
