@@ -103,5 +103,5 @@ fn a_map_at_finite_strain_is_played() {
     here.write("map.json", map);
     let said = here.succeed("play --map map.json --seconds 1");
     assert_has(&said, "ended as asked");
-    here.succeed("timing --map map.json --cycles 1000 --budget-us 60000000");
+    here.succeed("timing --map map.json --cycles 3000 --budget-us 60000000");
 }
