@@ -41,6 +41,7 @@ mod noise;
 pub mod noise_budget;
 pub mod nuisance;
 pub mod scan;
+pub mod sequential;
 pub mod simulate;
 pub mod weber;
 
