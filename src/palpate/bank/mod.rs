@@ -14,6 +14,7 @@
 //! | `rates.rs` | rates of error of the largest of many |
 //! | `information.rs` | how well a place can be known |
 //! | `locate.rs` | a recorded sweep against a bank |
+//! | `watch.rs` | a sweep against a bank while it is taken |
 //! | `reach.rs` | how deep, and how small |
 
 mod axis;
@@ -29,6 +30,7 @@ mod rates;
 mod reach;
 #[cfg(test)]
 mod tests;
+mod watch;
 
 pub(crate) use detector::likeliest;
 pub use detector::{BankDetector, BankStatistic};
@@ -41,6 +43,7 @@ pub use rates::{
     CONFIDENCE, CalibratedThreshold, RareRate, false_alarm_bound, false_alarm_threshold,
 };
 pub use reach::{BesideClass, Reach, Reached, deepest, smallest_diameters};
+pub use watch::{LikeliestPlace, WatchAnswer, WatchQuestion, Watcher};
 
 use crate::decimal::mm;
 use crate::force_map::{ForceMap, SAME_POSITION, check_gel, increasing};

@@ -6,10 +6,10 @@ use crate::refusal::Refusal;
 
 /// Where a position lies on an axis: between two entries, or at one that then stands twice.
 #[derive(Clone, Copy)]
-struct Place {
-    entries: [usize; 2],
+pub(crate) struct Place {
+    pub entries: [usize; 2],
     /// Weight of the second entry; the first has the rest.
-    fraction: f64,
+    pub fraction: f64,
 }
 
 impl Place {
@@ -21,7 +21,7 @@ impl Place {
     }
 
     /// The place of `position` (m) on an increasing axis: within [`SAME_POSITION`] of an entry that entry, and `None` beyond the ends.
-    fn within(axis: &[f64], position: f64) -> Option<Place> {
+    pub fn within(axis: &[f64], position: f64) -> Option<Place> {
         // The first entry that is the position or lies beyond it.
         let next = axis.partition_point(|&entry| entry < position - SAME_POSITION);
         if *axis.get(next)? <= position + SAME_POSITION {

@@ -45,6 +45,7 @@ use serde::{Deserialize, Serialize};
 
 pub use certificate::{Certificate, Discretization, SmallestDet};
 pub use grid::Gridded;
+pub(crate) use interpolation::Place;
 pub use interpolation::interpolate;
 pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use pair::Hypotheses;

@@ -304,12 +304,15 @@ pub(crate) fn nuisances_of(
         nuisances.push(f0.to_vec());
     }
     if unknown.contains(&Unknown::Depth) {
-        nuisances.push(depth_slope(depths, depth, expected)?.ok_or_else(|| {
-            let found = "the maps have a single depth";
-            Refusal::state(found, "give rows at other depths, or the depth as known")
-        })?);
+        nuisances.push(depth_slope(depths, depth, expected)?.ok_or_else(single_depth)?);
     }
     Ok(nuisances)
+}
+
+/// An unknown depth has no signal.
+pub(crate) fn single_depth() -> Refusal {
+    let found = "the maps have a single depth";
+    Refusal::state(found, "give rows at other depths, or the depth as known")
 }
 
 /// ∂F/∂d at the samples, N/m, between the `depths` on either side of `depth`; none if there is no other.

@@ -7,6 +7,7 @@
 //! | `contact.rs` | whether the probe touches |
 //! | `fit.rs` | whether it fits, and the likeliest cause if not |
 //! | `judge.rs` | what is known, what is asked, and the answer at a known position |
+//! | `live.rs` | samples that come line by line |
 //!
 //! Where the position is not known, [`crate::bank`] judges the record.
 //!
@@ -52,6 +53,7 @@ pub(crate) mod contact;
 pub(crate) mod design;
 mod fit;
 mod judge;
+mod live;
 #[cfg(test)]
 mod tests;
 
@@ -60,6 +62,7 @@ use std::path::Path;
 pub use design::{Unknown, in_words, nuisances};
 pub use fit::{Cause, Fit, MISFIT_RATE, reasons};
 pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
+pub use live::LiveSamples;
 
 use crate::csv::{Column, Layout, Rows};
 use crate::decimal::mm;

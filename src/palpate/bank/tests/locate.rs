@@ -6,10 +6,10 @@ use crate::stats::random::Generator;
 use crate::trace::{Cause, Correlation, Criterion, Noise, Question, Record, Trace, Unknown};
 use palpate_asserts::assert_near;
 
-const SD: f64 = 0.05;
+pub const SD: f64 = 0.05;
 
 /// A sweep of 61 samples over −3 … 3 mm of the gel of `map`, with noise unless there is no seed, and what a sensor adds.
-fn record(map: &ForceMap, seed: Option<u64>, offset: f64, gain: f64) -> Record {
+pub fn record(map: &ForceMap, seed: Option<u64>, offset: f64, gain: f64) -> Record {
     let positions: Vec<f64> = (0..61).map(|k| 1e-4 * f64::from(k) - 3e-3).collect();
     let exact = map.table().sweep(4e-3, &positions).unwrap();
     let mut text = String::from("position_mm,lateral_force_n,normal_force_n\n");
@@ -51,9 +51,9 @@ fn a_record_of_the_normal_force_alone_is_located_by_it() {
     );
 }
 
-const USUAL: &[Unknown] = &[Unknown::Offset, Unknown::Drift, Unknown::Gain];
+pub const USUAL: &[Unknown] = &[Unknown::Offset, Unknown::Drift, Unknown::Gain];
 
-fn question<'a>(unknown: &'a [Unknown], criterion: Criterion) -> Question<'a> {
+pub fn question<'a>(unknown: &'a [Unknown], criterion: Criterion) -> Question<'a> {
     Question {
         depth: 4e-3,
         depth_tolerance: 0.0,
@@ -68,7 +68,7 @@ fn question<'a>(unknown: &'a [Unknown], criterion: Criterion) -> Question<'a> {
     }
 }
 
-fn search<'a>(bank: &'a Bank, unknown: &'a [Unknown], criterion: Criterion) -> BankSearch<'a> {
+pub fn search<'a>(bank: &'a Bank, unknown: &'a [Unknown], criterion: Criterion) -> BankSearch<'a> {
     BankSearch {
         question: question(unknown, criterion),
         bank,
@@ -81,7 +81,7 @@ fn by_map(bank: &Bank) -> BankSearch<'_> {
     search(bank, USUAL, Criterion::MaximumAPosteriori)
 }
 
-fn all() -> Bank {
+pub fn all() -> Bank {
     Bank::new(reference(), maps()).unwrap()
 }
 

@@ -13,6 +13,7 @@ mod file;
 mod locate;
 mod place;
 mod rates;
+mod watch;
 
 /// Samples of a sweep over −8 … 8 mm.
 pub const SAMPLES: usize = 33;

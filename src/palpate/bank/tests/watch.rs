@@ -1,0 +1,456 @@
+//! Sweeps that are judged while they are taken.
+
+use super::locate::{SD, USUAL, all, record, search};
+use super::*;
+use crate::detect::Decision;
+use crate::detect::sequential::Wald;
+use crate::stats::binomial::clopper_pearson;
+use crate::trace::{Cause, Criterion, Record, Unknown};
+
+const TEST: [f64; 2] = [0.02, 0.05];
+
+fn question(unknown: &[Unknown]) -> WatchQuestion<'_> {
+    WatchQuestion {
+        unknown,
+        noise_sd: Force::new(SD, SD),
+        has_lateral: true,
+        is_zeroed: false,
+        prior_h1: 0.25,
+        prior: None,
+        test: Wald::new(TEST[0], TEST[1]).unwrap(),
+    }
+}
+
+/// The samples of a record, in order.
+fn samples(record: &Record) -> Vec<(f64, Force<f64>)> {
+    let forces = record.forces();
+    let lateral = |at| forces.lateral.get(at).copied().unwrap_or(f64::INFINITY);
+    let force = |at: usize| Force::new(lateral(at), forces.normal[at]);
+    record
+        .positions()
+        .iter()
+        .enumerate()
+        .map(|(at, x)| (*x, force(at)))
+        .collect()
+}
+
+fn watched(
+    question: &WatchQuestion<'_>,
+    samples: impl IntoIterator<Item = (f64, Force<f64>)>,
+) -> Watcher {
+    let mut watcher = Watcher::new(&all(), question).unwrap();
+    for (position, forces) in samples {
+        watcher
+            .push(
+                position,
+                if question.has_lateral {
+                    forces
+                } else {
+                    Force::new(0.0, forces.normal)
+                },
+            )
+            .unwrap();
+    }
+    watcher
+}
+
+// Verifies: SEQ-002, SEQ-025.
+#[test]
+fn the_last_answer_is_that_of_the_whole_record() {
+    use Unknown::{Depth, Drift, Gain, Offset};
+    let bank = all();
+    let with = map(Some((1.3, 3.5, 4.0)), &[4e-3]);
+    let own: Vec<f64> = (0..40).map(|at| f64::from(at % 7)).collect();
+    let own = times(1.0 / own.iter().sum::<f64>(), &own);
+    for unknown in [
+        &[][..],
+        USUAL,
+        &[Offset],
+        &[Gain, Drift],
+        &[Depth, Offset],
+        &[Offset, Drift, Gain, Depth],
+    ] {
+        for (map, seed) in [(&with, 1), (bank.reference(), 2)] {
+            let both = record(map, Some(seed), 0.0, 1.0);
+            for record in [both.clone(), both.normal_alone()] {
+                for prior in [None, Some(&own[..])] {
+                    let mut batch = search(&bank, unknown, Criterion::MaximumAPosteriori);
+                    batch.prior = prior;
+                    let expected = batch.locate(&record).unwrap();
+                    let has_lateral = !record.forces().lateral.is_empty();
+                    let question = WatchQuestion {
+                        has_lateral,
+                        prior,
+                        ..question(unknown)
+                    };
+                    let samples = samples(&record);
+                    // A sweep to the left is the same record.
+                    for found in [
+                        watched(&question, samples.iter().copied()),
+                        watched(&question, samples.iter().rev().copied()),
+                    ] {
+                        let found = found.answer().unwrap();
+                        let place = found.likeliest.unwrap();
+                        let place = [
+                            place.position_m,
+                            place.depth_m,
+                            place.diameter_m,
+                            place.youngs_modulus_pa,
+                        ];
+                        assert_eq!((found.samples, place), (61, expected.point), "{unknown:?}");
+                        assert!(
+                            (found.theta - expected.theta_mixture).abs() < 1e-9,
+                            "{unknown:?} {} {}",
+                            found.theta,
+                            expected.theta_mixture
+                        );
+                        assert!((found.posterior_h1 - expected.posterior).abs() < 1e-9);
+                        assert_eq!(found.causes, expected.causes);
+                    }
+                }
+            }
+        }
+    }
+}
+
+// Verifies: SEQ-020, SEQ-021, SEQ-022.
+#[test]
+fn a_path_that_ends_early_leaves_open_what_it_has_not_covered() {
+    let record = samples(&record(&reference(), Some(3), 0.2, 1.1));
+    let question = question(&[Unknown::Offset, Unknown::Gain]);
+    let half = watched(&question, record[..30].iter().copied())
+        .answer()
+        .unwrap();
+    assert_eq!(
+        (half.decision, half.places, half.causes.len()),
+        (None, 40, 0)
+    );
+    assert!(half.covered > 0 && half.excluded > 0, "{half:?}");
+    // 30 samples over −3 … −0.1 mm.
+    assert_eq!(half.uncovered_positions_m.last(), Some(&2e-3));
+    for position in &half.uncovered_positions_m {
+        assert!(half.open_positions_m.contains(position));
+    }
+    let whole = watched(&question, record.iter().copied()).answer().unwrap();
+    assert_eq!(whole.decision, Some(Decision::NoInclusion));
+    assert_eq!([whole.places, whole.covered, whole.excluded], [40; 3]);
+    assert!(whole.open_positions_m.is_empty() && whole.uncovered_positions_m.is_empty());
+    assert!(
+        whole
+            .decided_at_sample
+            .is_some_and(|sample| sample > 30 && sample <= 61)
+    );
+    // The first that could: what came before leaves places open.
+    let before = whole.decided_at_sample.unwrap() - 1;
+    let before = watched(&question, record[..before].iter().copied())
+        .answer()
+        .unwrap();
+    assert_eq!(before.decision, None);
+    assert!(before.excluded < 40);
+    // Places that cannot be need no coverage.
+    let mut left = vec![0.0; 40];
+    for diameter in 0..2 {
+        left[20 * diameter] = 0.5;
+    }
+    let left = WatchQuestion {
+        prior: Some(&left),
+        ..question
+    };
+    let half = watched(&left, record[..40].iter().copied())
+        .answer()
+        .unwrap();
+    assert_eq!(
+        (half.decision, half.places),
+        (Some(Decision::NoInclusion), 2)
+    );
+}
+
+// Verifies: SEQ-020, SEQ-022.
+#[test]
+fn an_inclusion_is_told_before_the_sweep_is_over_and_stays_told() {
+    let bank = all();
+    // At −1 mm, 4 mm deep, 8 mm wide.
+    let place = (0..40)
+        .find(|&map| bank.point(map)[..3] == [-1e-3, 4e-3, 8e-3])
+        .unwrap();
+    let record = samples(&record(&bank.maps()[place], Some(4), 0.2, 1.1));
+    let mut watcher = watched(&question(USUAL), None);
+    let mut told = None;
+    for (at, (position, forces)) in (1..).zip(record) {
+        watcher.push(position, forces).unwrap();
+        let found = watcher.answer().unwrap();
+        if told.is_none() && found.decision.is_some() {
+            told = Some(at);
+            assert!(found.theta >= -TEST[0].ln());
+        }
+        let expected = told.map(|_| Decision::Inclusion);
+        assert_eq!((found.decision, found.decided_at_sample), (expected, told));
+    }
+    assert!(told.is_some_and(|at| at < 40), "{told:?}");
+    let found = watcher.answer().unwrap().likeliest.unwrap();
+    assert_eq!(
+        (found.position_m, found.depth_m, found.diameter_m),
+        (-1e-3, 4e-3, 8e-3)
+    );
+    assert!(found.probability > 0.5 && found.probability <= 1.0);
+}
+
+// Verifies: SEQ-024.
+#[test]
+fn samples_that_are_missing_or_outside_are_counted_and_change_nothing() {
+    let record = samples(&record(&reference(), Some(5), 0.2, 1.1));
+    let question = question(USUAL);
+    let mut holed = Vec::new();
+    let nan = f64::NAN;
+    for (at, &(x, forces)) in record.iter().enumerate() {
+        holed.extend(
+            [
+                (x, Force::new(nan, forces.normal)),
+                (nan, forces),
+                (x, Force::new(0.0, nan)),
+            ]
+            .get(at),
+        );
+        holed.extend([(3.1e-3, forces), (-3.1e-3, forces)].get(at));
+        holed.push((x, forces));
+    }
+    let (found, expected) = (
+        watched(&question, holed).answer().unwrap(),
+        watched(&question, record).answer().unwrap(),
+    );
+    assert_eq!((found.samples, found.missing, found.outside), (61, 3, 2));
+    assert_eq!(
+        WatchAnswer {
+            missing: 0,
+            outside: 0,
+            ..found
+        },
+        expected
+    );
+    // The force that the sensor does not have may be anything.
+    let question = WatchQuestion {
+        has_lateral: false,
+        ..question
+    };
+    let mut watcher = watched(&question, None);
+    watcher.push(0.0, Force::new(f64::NAN, 1.0)).unwrap();
+    assert_eq!(watcher.answer().unwrap().samples, 1);
+}
+
+// Verifies: SEQ-023.
+#[test]
+fn a_record_that_no_hypothesis_explains_is_not_answered() {
+    let gel = samples(&record(&reference(), Some(6), 0.0, 1.0));
+    let air: Vec<_> = gel
+        .iter()
+        .map(|&(x, f)| (x, Force::new(f.lateral, f.normal - 1.0)))
+        .collect();
+    let question = question(&[Unknown::Offset]);
+    let all = watched(&question, air.iter().copied()).answer().unwrap();
+    assert_eq!(
+        (all.causes.as_slice(), all.decision, all.excluded),
+        (&[Cause::NoContact][..], None, 0)
+    );
+    assert_eq!((all.covered, all.open_positions_m.len()), (40, 5));
+    let zeroed = WatchQuestion {
+        is_zeroed: true,
+        ..question
+    };
+    let on_gel = watched(&zeroed, air.iter().copied()).answer().unwrap();
+    assert_eq!(on_gel.decision, Some(Decision::NoInclusion));
+    // The probe comes down at 0: a step.
+    let step: Vec<_> = air[..30].iter().chain(&gel[30..]).copied().collect();
+    let found = watched(&zeroed, step).answer().unwrap();
+    assert_eq!(
+        (found.causes.as_slice(), found.decision),
+        (&[Cause::Misfit][..], None)
+    );
+    // A noise that is stated three times too large, after 122 rows: R is ν/9, and the limit is ν − 2 √(14.5 ν) = ν/3.
+    let noise_sd = Force::new(3.0 * SD, 3.0 * SD);
+    let quiet = watched(
+        &WatchQuestion {
+            noise_sd,
+            ..question
+        },
+        gel.iter().copied(),
+    );
+    assert_eq!(quiet.answer().unwrap().causes, [Cause::Misfit]);
+    // An answer that was given is withheld while the record does not fit.
+    let mut watcher = watched(&question, gel.iter().copied());
+    assert_eq!(
+        watcher.answer().unwrap().decision,
+        Some(Decision::NoInclusion)
+    );
+    for (x, forces) in air.iter().rev().take(40).copied() {
+        watcher.push(x, forces).unwrap();
+    }
+    let found = watcher.answer().unwrap();
+    assert_eq!(
+        (
+            found.decision,
+            found.decided_at_sample,
+            found.causes.as_slice()
+        ),
+        (None, None, &[Cause::Misfit][..])
+    );
+}
+
+// Verifies: SEQ-002.
+#[test]
+fn what_cannot_be_watched_is_refused() {
+    let (bank, usual) = (all(), question(USUAL));
+    let refused =
+        |question: WatchQuestion<'_>| Watcher::new(&bank, &question).unwrap_err().to_string();
+    let unknown = [Unknown::Offset, Unknown::Variance];
+    assert!(
+        refused(WatchQuestion {
+            unknown: &unknown,
+            ..usual
+        })
+        .contains("cannot be estimated")
+    );
+    assert!(
+        refused(WatchQuestion {
+            noise_sd: Force::new(SD, 0.0),
+            ..usual
+        })
+        .contains("noise_sd_normal_n")
+    );
+    assert!(
+        refused(WatchQuestion {
+            noise_sd: Force::new(1e-60, SD),
+            ..usual
+        })
+        .contains("1e50")
+    );
+    assert!(
+        refused(WatchQuestion {
+            prior_h1: 1.0,
+            ..usual
+        })
+        .contains("prior_h1")
+    );
+    assert!(
+        refused(WatchQuestion {
+            prior: Some(&[1.0]),
+            ..usual
+        })
+        .contains("prior")
+    );
+    assert!(
+        refused(WatchQuestion {
+            prior: Some(&[0.1; 40]),
+            ..usual
+        })
+        .contains("prior")
+    );
+    let single = Bank::new(map(None, &[4e-3]), maps()).unwrap();
+    let question = WatchQuestion {
+        unknown: &[Unknown::Depth],
+        ..usual
+    };
+    assert!(
+        Watcher::new(&single, &question)
+            .unwrap_err()
+            .to_string()
+            .contains("single depth")
+    );
+    let mut watcher = Watcher::new(&bank, &usual).unwrap();
+    for (x, lateral, normal) in [
+        (f64::INFINITY, 0.0, 1.0),
+        (0.0, f64::NEG_INFINITY, 1.0),
+        (0.0, 0.0, 1e60),
+        (f64::NAN, 0.0, f64::INFINITY),
+    ] {
+        assert!(watcher.push(x, Force::new(lateral, normal)).is_err());
+    }
+    let found = watcher.answer().unwrap();
+    assert_eq!(
+        (
+            found.samples,
+            found.missing,
+            found.theta,
+            found.posterior_h1
+        ),
+        (0, 0, 0.0, 0.25)
+    );
+    // Named twice is named once.
+    let twice = [Unknown::Offset; 9];
+    let mut watcher = Watcher::new(
+        &bank,
+        &WatchQuestion {
+            unknown: &twice,
+            ..usual
+        },
+    )
+    .unwrap();
+    watcher.push(0.0, Force::new(0.0, 1.0)).unwrap();
+}
+
+/// Of so many sweeps back and forth over a gel with the inclusion of a map, or none, in noise of 0.4 N: how many are answered
+/// "inclusion", how many "no inclusion", and of how many the place of the inclusion was ever excluded.
+fn answers(trials: u64, map: Option<usize>) -> [u64; 3] {
+    let (bank, sd) = (all(), 0.4);
+    let question = WatchQuestion {
+        noise_sd: Force::new(sd, sd),
+        is_zeroed: true,
+        ..question(USUAL)
+    };
+    let fresh = Watcher::new(&bank, &question).unwrap();
+    let table = map.map_or(&bank.reference, |map| &bank.maps()[map]).table();
+    let path = (0..240).map(|k| 1e-4 * f64::from((k % 120 - 60_i32).abs() - 30));
+    let path: Vec<f64> = path.collect();
+    let exact = table.sweep(4e-3, &path).unwrap();
+    let generator = Generator::new(20_261_126, map.map_or(0, |map| map as u64 + 1));
+    let (mut noise, mut counts) = (vec![0.0; 2 * path.len()], [0; 3]);
+    for trial in 0..trials {
+        generator.normals(trial, 0, &mut noise);
+        let (mut watcher, mut is_excluded) = (fresh.clone(), false);
+        for (at, x) in path.iter().enumerate() {
+            let normal = 1.1 * exact.normal[at] + 0.2 + sd * noise[2 * at];
+            let forces = Force::new(sd * noise[2 * at + 1], normal);
+            watcher.push(*x, forces).unwrap();
+            let there = map.and_then(|map| watcher.found.evidence().nth(map));
+            is_excluded |= there.is_some_and(|of| watcher.is_excluded(of));
+        }
+        let decision = watcher.answer().unwrap().decision;
+        counts[0] += u64::from(decision == Some(Decision::Inclusion));
+        counts[1] += u64::from(decision == Some(Decision::NoInclusion));
+        counts[2] += u64::from(is_excluded);
+    }
+    counts
+}
+
+/// Checks both rates by the upper ends of their 99 % intervals, and that they are no smaller than a tenth of what is stated: a bound that
+/// is never reached shows nothing.
+fn check_rates(trials: u64) {
+    let rate = |count| clopper_pearson(count, trials, 0.99).unwrap();
+    let without = answers(trials, None);
+    println!("without: {without:?} of {trials}");
+    assert!(rate(without[0]).upper <= TEST[0], "{without:?}");
+    assert!(rate(without[0]).upper >= 0.1 * TEST[0], "{without:?}");
+    // In the middle, 4 mm wide, 3 and 4 mm deep.
+    for map in [2, 7] {
+        let with = answers(trials, Some(map));
+        println!("with {map}: {with:?} of {trials}");
+        assert!(
+            with[1] <= with[2] && rate(with[2]).upper <= TEST[1],
+            "{with:?}"
+        );
+        assert!(rate(with[2]).upper >= 0.1 * TEST[1], "{with:?}");
+    }
+}
+
+// Verifies: SEQ-020, SEQ-021.
+#[test]
+fn false_answers_are_as_rare_as_stated_however_often_one_looks() {
+    check_rates(2000);
+}
+
+// Takes minutes.
+// Verifies: SEQ-020, SEQ-021.
+#[test]
+#[ignore = "100,000 records of each kind"]
+fn false_answers_of_many_records_are_as_rare_as_stated() {
+    check_rates(100_000);
+}

@@ -1,0 +1,414 @@
+//! A sweep against a bank while it is taken: what each sample adds, and when it is enough (`spec/sequential.md`).
+
+use serde::{Serialize, Serializer};
+
+use super::Bank;
+use crate::detect::mixture::mixture_theta;
+use crate::detect::sequential::{Evidence, Sequential, Wald, memory};
+use crate::detect::{Decision, DetectError, posterior};
+use crate::force::Force;
+use crate::force_map::{ForceTable, Place, increasing};
+use crate::refusal::Refusal;
+use crate::stats::error::{check_positive, check_probability, check_samples, in_range};
+use crate::trace::contact::LEAST_LEVEL;
+use crate::trace::design::{depth_slope, difference, single_depth, stacked};
+use crate::trace::{Cause, Unknown, refused};
+
+/// −ln of half the rate at which a record that fits is taken for a misfit.
+///
+/// Implements: SEQ-023.
+const MISFIT: f64 = 14.508_657_738_524_219;
+/// The largest force over the noise.
+const MOST: f64 = 1e50;
+/// Offsets and drifts of two channels, gain and depth.
+const MOST_COLUMNS: usize = 6;
+
+/// What is known of a sweep that is being taken, and what is asked.
+///
+/// Implements: SEQ-002.
+#[derive(Debug, Clone, Copy)]
+pub struct WatchQuestion<'a> {
+    /// What is not known of the sweep; of the standard deviation of the noise nothing may be.
+    pub unknown: &'a [Unknown],
+    /// Standard deviation of a sample of either force, N.
+    pub noise_sd: Force<f64>,
+    /// Whether the sensor has a lateral force.
+    pub has_lateral: bool,
+    /// Whether the sensor was set to zero on the gel, so that its forces say nothing of contact.
+    pub is_zeroed: bool,
+    /// Pr(H = 1) before the sweep.
+    pub prior_h1: f64,
+    /// The probability of each of the bank's maps, given an inclusion; none if all are equally probable.
+    pub prior: Option<&'a [f64]>,
+    /// The rates of false answers.
+    pub test: Wald,
+}
+
+/// Judges a sweep sample by sample.
+#[derive(Debug, Clone)]
+pub struct Watcher {
+    unknown: Vec<Unknown>,
+    noise_sd: Force<f64>,
+    has_lateral: bool,
+    is_zeroed: bool,
+    prior_h1: f64,
+    test: Wald,
+    prior: Vec<f64>,
+    points: Vec<[f64; 4]>,
+    laterals: Vec<f64>,
+    /// For each lateral position and channel F_0, ∂F_0/∂d if the depth is unknown, and the signal of each map, over the noise.
+    expected: Vec<f64>,
+    /// The same at the sample at hand.
+    at_sample: Vec<f64>,
+    pub(super) found: Sequential<Vec<f64>>,
+    samples: usize,
+    missing: usize,
+    outside: usize,
+    /// Σ F f and Σ f² of the normal forces over the noise.
+    contact: [f64; 2],
+    answered: Option<(Decision, usize)>,
+}
+
+/// What the samples so far say. Serialised, it is an answer of `palpate watch`.
+///
+/// Implements: SEQ-022, SEQ-024.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WatchAnswer {
+    /// Samples that count.
+    pub samples: usize,
+    /// Samples with a missing number.
+    pub missing: usize,
+    /// Samples outside the bank's lateral positions.
+    pub outside: usize,
+    /// Pr(H = 1 | samples), by the mixture.
+    pub posterior_h1: f64,
+    /// ln of the likelihood ratio of an inclusion at any point.
+    pub theta: f64,
+    /// Ĥ, if it is answered.
+    #[serde(serialize_with = "decision")]
+    pub decision: Option<Decision>,
+    /// The number of the sample that answered.
+    pub decided_at_sample: Option<usize>,
+    /// Why nothing can be answered.
+    pub causes: Vec<Cause>,
+    /// The likeliest place, once a place has a signal.
+    pub likeliest: Option<LikeliestPlace>,
+    /// Places with a prior above 0.
+    pub places: usize,
+    /// Those of them that the path has covered.
+    pub covered: usize,
+    /// Those where an inclusion is excluded.
+    pub excluded: usize,
+    /// The positions with a place that is not excluded, m.
+    pub open_positions_m: Vec<f64>,
+    /// The positions with a place that the path has not covered, m.
+    pub uncovered_positions_m: Vec<f64>,
+}
+
+/// A place of the bank.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LikeliestPlace {
+    /// x of its centre, m.
+    pub position_m: f64,
+    /// Depth of its highest point, m.
+    pub depth_m: f64,
+    /// Its diameter, m.
+    pub diameter_m: f64,
+    /// Its Young's modulus, Pa.
+    pub youngs_modulus_pa: f64,
+    /// Its probability, given an inclusion of the bank.
+    pub probability: f64,
+}
+
+fn decision<S: Serializer>(decision: &Option<Decision>, to: S) -> Result<S::Ok, S::Error> {
+    let name = decision.map(|decision| match decision {
+        Decision::Inclusion => "inclusion",
+        Decision::NoInclusion => "no_inclusion",
+    });
+    name.serialize(to)
+}
+
+impl Watcher {
+    /// Before the first sample.
+    ///
+    /// # Errors
+    /// An unknown level of the noise; an unknown depth where the reference has one depth; a standard deviation that is not above 0;
+    /// a prior that is none, or of another length.
+    ///
+    /// Implements: SEQ-002.
+    pub fn new(bank: &Bank, question: &WatchQuestion<'_>) -> Result<Watcher, Refusal> {
+        let level = Refusal::state(
+            "the noise of a sweep that is being taken cannot be estimated",
+            "state its standard deviation, and leave variance out of what is unknown",
+        );
+        level.when(question.unknown.contains(&Unknown::Variance))?;
+        let maps = bank.maps().len();
+        let prior = question.prior.map(<[f64]>::to_vec);
+        let prior = prior.unwrap_or_else(|| vec![1.0 / maps as f64; maps]);
+        let checked = || {
+            check_positive("noise_sd_lateral_n", question.noise_sd.lateral)?;
+            check_positive("noise_sd_normal_n", question.noise_sd.normal)?;
+            check_probability("prior_h1", question.prior_h1)?;
+            check_samples("prior", &prior, maps)?;
+            mixture_theta(&vec![0.0; maps], &prior)
+        };
+        checked().map_err(refused)?;
+        // Each once.
+        let unknown = Unknown::ALL.into_iter();
+        let unknown: Vec<_> = unknown.filter(|of| question.unknown.contains(of)).collect();
+        let nuisances = columns(&unknown);
+        let found = Sequential::new(vec![0.0; memory(maps, nuisances)], maps, nuisances);
+        let laterals = bank.reference().table().laterals();
+        let expected = expected(bank, question)?;
+        Ok(Watcher {
+            unknown,
+            noise_sd: question.noise_sd,
+            has_lateral: question.has_lateral,
+            is_zeroed: question.is_zeroed,
+            prior_h1: question.prior_h1,
+            test: question.test,
+            prior,
+            points: (0..maps).map(|map| bank.point(map)).collect(),
+            at_sample: vec![0.0; expected.len() / (2 * laterals.len())],
+            laterals: laterals.to_vec(),
+            expected,
+            found: found.map_err(refused)?,
+            samples: 0,
+            missing: 0,
+            outside: 0,
+            contact: [0.0; 2],
+            answered: None,
+        })
+    }
+
+    /// Adds a sample: position (m) and forces (N). A NaN is missing; a sensor without a lateral force may give anything for it.
+    ///
+    /// # Errors
+    /// A number that is infinite, or a force that is absurd; the sample then does not count.
+    ///
+    /// Implements: SEQ-020, SEQ-024.
+    pub fn push(&mut self, position: f64, forces: Force<f64>) -> Result<(), DetectError> {
+        let lateral = if self.has_lateral {
+            forces.lateral
+        } else {
+            0.0
+        };
+        let white = [
+            lateral / self.noise_sd.lateral,
+            forces.normal / self.noise_sd.normal,
+        ];
+        for (what, value, size) in [
+            ("position", position, position),
+            ("lateral force", lateral, white[0]),
+            ("normal force", forces.normal, white[1]),
+        ] {
+            let is_right = value.is_nan() || size.abs() <= MOST;
+            in_range(
+                is_right,
+                what,
+                value,
+                "finite, at most 1e50 times the noise, or NaN where it is missing",
+            )?;
+        }
+        if (position + lateral + forces.normal).is_nan() {
+            self.missing += 1;
+            return Ok(());
+        }
+        let Some(place) = Place::within(&self.laterals, position) else {
+            self.outside += 1;
+            return Ok(());
+        };
+        if self.has_lateral {
+            self.push_row(place, 0, white[0])?;
+        }
+        self.push_row(place, 1, white[1])?;
+        self.contact[0] += white[1] * self.at_sample[0];
+        self.contact[1] += self.at_sample[0] * self.at_sample[0];
+        self.samples += 1;
+        self.judge()
+    }
+
+    /// Adds the force of one channel, 0 lateral or 1 normal, over its noise.
+    ///
+    /// Implements: SEQ-002.
+    fn push_row(&mut self, place: Place, channel: usize, force: f64) -> Result<(), DetectError> {
+        let length = self.at_sample.len();
+        let list = |entry: usize| &self.expected[(2 * entry + channel) * length..][..length];
+        let [a, b] = place.entries.map(list);
+        for ((value, a), b) in self.at_sample.iter_mut().zip(a).zip(b) {
+            *value = (1.0 - place.fraction) * a + place.fraction * b;
+        }
+        let (expected, signals) = self.at_sample.split_at(length - self.points.len());
+        let unit = 1.0 / self.noise_sd.into_array()[channel];
+        let (mut nuisances, mut used) = ([0.0; MOST_COLUMNS], 0);
+        for &unknown in &self.unknown {
+            let (at, value) = match unknown {
+                Unknown::Offset => (channel, unit),
+                Unknown::Drift => (channel, unit * self.samples as f64),
+                Unknown::Gain => (0, expected[0]),
+                Unknown::Depth | Unknown::Variance => (0, expected[expected.len() - 1]),
+            };
+            nuisances[used + at] = value;
+            used += columns(&[unknown]);
+        }
+        self.found
+            .push(force - expected[0], &nuisances[..used], signals)
+    }
+
+    /// Whether the test is over.
+    ///
+    /// Implements: SEQ-020, SEQ-023.
+    fn judge(&mut self) -> Result<(), DetectError> {
+        let best = self.likeliest();
+        if self.answered.is_some() || self.causes(best).next().is_some() {
+            return Ok(());
+        }
+        let largest = best.map_or(0.0, |(_, of)| of.theta());
+        // The mixture is at most the largest, and takes long.
+        let is_there = largest >= self.test.upper() && self.theta()? >= self.test.upper();
+        let answer = if is_there {
+            Some(Decision::Inclusion)
+        } else {
+            let mut possible = self.possible();
+            let is_none = possible.all(|(_, of)| self.is_excluded(of));
+            is_none.then_some(Decision::NoInclusion)
+        };
+        self.answered = answer.map(|answer| (answer, self.samples));
+        Ok(())
+    }
+
+    /// The places that may be there by the prior.
+    fn possible(&self) -> impl Iterator<Item = (usize, Evidence)> {
+        let places = self.found.evidence().enumerate();
+        places.filter(|&(place, _)| self.prior[place] > 0.0)
+    }
+
+    /// The first possible place of the largest θ that has a signal.
+    fn likeliest(&self) -> Option<(usize, Evidence)> {
+        let told = self.possible().filter(|(_, of)| of.gamma_squared > 0.0);
+        told.reduce(|best, next| {
+            if next.1.theta() > best.1.theta() {
+                next
+            } else {
+                best
+            }
+        })
+    }
+
+    /// Implements: SEQ-021.
+    fn is_covered(&self, of: Evidence) -> bool {
+        of.gamma_squared >= -2.0 * self.test.lower()
+    }
+
+    /// Implements: SEQ-021.
+    pub(super) fn is_excluded(&self, of: Evidence) -> bool {
+        self.is_covered(of) && of.theta() <= self.test.lower()
+    }
+
+    /// Why nothing can be answered.
+    ///
+    /// Implements: SEQ-023.
+    fn causes(&self, likeliest: Option<(usize, Evidence)>) -> impl Iterator<Item = Cause> + use<> {
+        let [cross, squares] = self.contact;
+        let is_in_air = !self.is_zeroed && cross.abs() < LEAST_LEVEL * squares;
+        let told = likeliest.map_or(0.0, |(_, of)| of.along * of.along / of.gamma_squared);
+        let degrees =
+            self.found.rows() as f64 - self.found.rank() as f64 - f64::from(likeliest.is_some());
+        let beyond = self.found.residual() - told - degrees;
+        let width = 2.0 * libm::sqrt(MISFIT * degrees.max(0.0));
+        let is_misfit = degrees > 0.0 && (beyond < -width || beyond > width + 2.0 * MISFIT);
+        let causes = [(is_in_air, Cause::NoContact), (is_misfit, Cause::Misfit)];
+        causes
+            .into_iter()
+            .filter_map(|(is_so, cause)| is_so.then_some(cause))
+    }
+
+    /// ln of the likelihood ratio of an inclusion at any point.
+    fn theta(&self) -> Result<f64, DetectError> {
+        let theta: Vec<f64> = self.found.evidence().map(Evidence::theta).collect();
+        mixture_theta(&theta, &self.prior)
+    }
+
+    /// What the samples so far say.
+    ///
+    /// # Errors
+    /// A result beyond the range of numbers.
+    ///
+    /// Implements: SEQ-020, SEQ-022, SEQ-023, SEQ-024, SEQ-025.
+    pub fn answer(&self) -> Result<WatchAnswer, DetectError> {
+        let (best, theta) = (self.likeliest(), self.theta()?);
+        let causes: Vec<Cause> = self.causes(best).collect();
+        let answered = self.answered.filter(|_| causes.is_empty());
+        let is_excluded = |of| causes.is_empty() && self.is_excluded(of);
+        let count =
+            |is: &dyn Fn(Evidence) -> bool| self.possible().filter(|&(_, of)| is(of)).count();
+        let positions = |is: &dyn Fn(Evidence) -> bool| {
+            let places = self.possible().filter(|&(_, of)| is(of));
+            increasing(places.map(|(place, _)| self.points[place][0]))
+        };
+        Ok(WatchAnswer {
+            samples: self.samples,
+            missing: self.missing,
+            outside: self.outside,
+            posterior_h1: posterior(theta, self.prior_h1)?,
+            theta,
+            decision: answered.map(|(decision, _)| decision),
+            decided_at_sample: answered.map(|(_, sample)| sample),
+            likeliest: best.map(|(place, of)| {
+                let [position_m, depth_m, diameter_m, youngs_modulus_pa] = self.points[place];
+                let probability = self.prior[place] * libm::exp(of.theta() - theta);
+                LikeliestPlace {
+                    position_m,
+                    depth_m,
+                    diameter_m,
+                    youngs_modulus_pa,
+                    probability,
+                }
+            }),
+            places: count(&|_| true),
+            covered: count(&|of| self.is_covered(of)),
+            excluded: count(&is_excluded),
+            open_positions_m: positions(&|of| !is_excluded(of)),
+            uncovered_positions_m: positions(&|of| !self.is_covered(of)),
+            causes,
+        })
+    }
+}
+
+/// How many nuisances these are: offset and drift have one for each channel.
+fn columns(unknown: &[Unknown]) -> usize {
+    let of = |unknown: &Unknown| match unknown {
+        Unknown::Offset | Unknown::Drift => 2,
+        Unknown::Gain | Unknown::Depth => 1,
+        Unknown::Variance => 0,
+    };
+    unknown.iter().map(of).sum()
+}
+
+/// As [`Watcher::expected`].
+fn expected(bank: &Bank, question: &WatchQuestion<'_>) -> Result<Vec<f64>, Refusal> {
+    let (reference, depth) = (bank.reference().table(), bank.depth());
+    let (laterals, depths) = (reference.laterals(), reference.depths());
+    let of = |map: &ForceTable, depth| map.sweep(depth, laterals).map(stacked);
+    let f0 = of(reference, depth)?;
+    let mut lists = vec![f0.clone()];
+    if question.unknown.contains(&Unknown::Depth) {
+        let slope = depth_slope(depths, depth, |depth| of(reference, depth))?;
+        lists.push(slope.ok_or_else(single_depth)?);
+    }
+    for map in bank.maps() {
+        lists.push(difference(&of(map.table(), depth)?, &f0));
+    }
+    let [lateral, normal] = question.noise_sd.into_array();
+    let columns = 0..laterals.len();
+    let channels =
+        columns.flat_map(|column| [(column, lateral), (column + laterals.len(), normal)]);
+    let white = channels.flat_map(|(at, sd)| lists.iter().map(move |list| list[at] / sd));
+    let white: Vec<f64> = white.collect();
+    let units = [1.0 / lateral, 1.0 / normal];
+    let mut sizes = white.iter().chain(&units);
+    let found = "the forces of the bank are more than 1e50 times the noise";
+    let absurd = Refusal::state(found, "state the noise in N");
+    absurd.when(sizes.any(|size| size.abs() > MOST))?;
+    Ok(white)
+}

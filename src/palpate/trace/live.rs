@@ -1,0 +1,241 @@
+//! Samples that come line by line, as CSV or JSON.
+
+use serde_json::{Map, Value};
+
+use super::COLUMNS;
+use crate::csv::{Column, Layout, row_below};
+use crate::force::Force;
+use crate::refusal::Refusal;
+
+/// Those of a trace over positions.
+const LIVE: [Column; 3] = [&[COLUMNS[0][0]], COLUMNS[1], COLUMNS[2]];
+
+/// The headers that are right, for a person.
+const EXPECTED: &str = "position_mm,lateral_force_n,normal_force_n, in any order, also position_m and forces as _mn, or say with --columns what each holds";
+
+/// Reads samples from the lines of a stream: CSV with a header as of a trace over positions, or objects of JSON with its columns as keys.
+///
+/// ```
+/// use palpate::force::Force;
+/// use palpate::trace::LiveSamples;
+///
+/// let mut csv = LiveSamples::new("-", Default::default());
+/// assert_eq!(csv.sample("position_mm,normal_force_n")?, None);
+/// assert_eq!(csv.sample("-1,1.5")?, Some((-1e-3, Force::new(0.0, 1.5))));
+/// assert!(!csv.has_lateral());
+/// let mut json = LiveSamples::new("-", Default::default());
+/// let sample = json.sample(r#"{"position_mm": -1, "lateral_force_n": 0.25, "normal_force_n": 1.5}"#)?;
+/// assert_eq!(sample, Some((-1e-3, Force::new(0.25, 1.5))));
+/// # Ok::<(), palpate::refusal::Refusal>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct LiveSamples {
+    file: String,
+    layout: Layout,
+    line: usize,
+    /// The header of CSV with its line.
+    header: Option<(usize, String)>,
+    has_lateral: Option<bool>,
+}
+
+impl LiveSamples {
+    /// Before the first line; in messages `file` is where the lines come from.
+    pub fn new(file: &str, layout: Layout) -> LiveSamples {
+        LiveSamples {
+            file: file.into(),
+            layout,
+            line: 0,
+            header: None,
+            has_lateral: None,
+        }
+    }
+
+    /// Whether the samples have lateral forces, as the header or the first object says.
+    pub fn has_lateral(&self) -> bool {
+        self.has_lateral.unwrap_or(false)
+    }
+
+    /// The same refusal at the last line.
+    pub fn refused(&self, refusal: Refusal) -> Refusal {
+        refusal.at(self.line).in_file(&*self.file)
+    }
+
+    /// The position (m) and the forces (N) of the next line, NaN where a number is missing; nothing of a header, a comment or a blank
+    /// line.
+    ///
+    /// # Errors
+    /// A header or object that does not name the columns, a field that is no finite decimal number, text that is no JSON; with the line.
+    ///
+    /// Implements: CLI-179.
+    pub fn sample(&mut self, text: &str) -> Result<Option<(f64, Force<f64>)>, Refusal> {
+        self.line += 1;
+        let text = text.trim();
+        let is_skipped =
+            text.is_empty() || text.starts_with('#') || self.line <= self.layout.skipped;
+        if is_skipped {
+            return Ok(None);
+        }
+        let read = match &self.header {
+            None if text.starts_with('{') => self.object(text).map(Some),
+            None => {
+                self.header = Some((self.line, text.trim_start_matches('\u{feff}').into()));
+                self.row(None).map(|_| None)
+            }
+            Some(_) => self.row(Some(text)).map(Some),
+        };
+        read.map_err(|refusal| refusal.in_file(&*self.file))
+    }
+
+    /// A row below the header, or the header alone.
+    fn row(&mut self, row: Option<&str>) -> Result<(f64, Force<f64>), Refusal> {
+        let header = self.header.clone().unwrap_or_default();
+        self.read((header.0, &header.1), row)
+    }
+
+    fn read(
+        &mut self,
+        header: (usize, &str),
+        row: Option<&str>,
+    ) -> Result<(f64, Force<f64>), Refusal> {
+        let row = row.map(|row| (self.line, row));
+        let read = row_below::<2, 3>(header, row, LIVE, EXPECTED, &self.layout)?;
+        let ([position, normal, lateral], has_lateral) = read;
+        // Where the first sample has a lateral force, one without it is missing.
+        let is_missing = *self.has_lateral.get_or_insert(has_lateral) && !has_lateral;
+        let lateral = if is_missing { f64::NAN } else { lateral };
+        Ok((position, Force::new(lateral, normal)))
+    }
+
+    /// An object, as a header of its keys and a row of its values.
+    fn object(&mut self, text: &str) -> Result<(f64, Force<f64>), Refusal> {
+        let object: Map<String, Value> = serde_json::from_str(text).map_err(|error| {
+            let expected = "give an object such as {\"position_mm\": -1, \"lateral_force_n\": 0.02, \"normal_force_n\": 1.5}";
+            Refusal::state(crate::file::message(&error), expected).at(self.line)
+        })?;
+        let quoted = |key: &String| format!("\"{key}\"");
+        let value = |value: &Value| match value {
+            Value::Null => String::new(),
+            value => value.to_string(),
+        };
+        let header: Vec<String> = object.keys().map(quoted).collect();
+        let row: Vec<String> = object.values().map(value).collect();
+        self.read((self.line, &header.join(";")), Some(&row.join(";")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(lines: &[&str]) -> Result<Vec<[f64; 3]>, String> {
+        let mut samples = LiveSamples::new("-", Layout::default());
+        let read = lines
+            .iter()
+            .filter_map(|line| samples.sample(line).transpose());
+        let numbers =
+            |(position, force): (f64, Force<f64>)| [position, force.lateral, force.normal];
+        let read: Result<Vec<_>, Refusal> = read.map(|read| read.map(numbers)).collect();
+        read.map_err(|refusal| refusal.to_string())
+    }
+
+    // Verifies: CLI-179.
+    #[test]
+    fn lines_of_csv_and_of_json_are_the_same_samples() {
+        let expected = [[-1e-3, 0.02, 1.5], [5e-4, -0.03, 1.6]];
+        let texts = [
+            &[
+                "# pass 3",
+                "",
+                "position_mm,lateral_force_n,normal_force_n",
+                "-1,0.02,1.5",
+                "0.5,-0.03,1.6",
+            ][..],
+            &[
+                "\u{feff}note\tx [mm]\tFz(mN)\tFx(mN)\r",
+                "a\t-1\t1500\t20\r",
+                "b\t0.5\t1600\t-30\r",
+            ],
+            &[
+                "normal_force_n;lateral_force_n;position_mm",
+                "1,5;0,02;-1",
+                "1,6;-0,03;0,5",
+            ],
+            &[
+                r#"{"position_mm": -1, "lateral_force_n": 0.02, "normal_force_n": 1.5}"#,
+                r#"{"stamp": "12:01;7", "normal_force_mn": 1.6e3, "lateral_force_n": -3e-2, "position_m": 5e-4}"#,
+            ],
+        ];
+        for text in texts {
+            assert_eq!(read(text).unwrap(), expected, "{text:?}");
+        }
+        assert_eq!(
+            read(&["position_mm,normal_force_n", "2,1"]).unwrap(),
+            [[2e-3, 0.0, 1.0]]
+        );
+        assert_eq!(
+            read(&[r#"{"position_mm": 2, "normal_force_n": 1}"#]).unwrap(),
+            [[2e-3, 0.0, 1.0]]
+        );
+    }
+
+    // Verifies: CLI-179.
+    #[test]
+    fn a_missing_number_makes_the_sample_missing() {
+        let texts = [
+            &[
+                "position_mm,lateral_force_n,normal_force_n",
+                "1,,2",
+                "1,nan,2",
+                "NaN,1,2",
+            ][..],
+            &[
+                r#"{"position_mm": 1, "lateral_force_n": 1, "normal_force_n": null}"#,
+                r#"{"position_mm": 1, "normal_force_n": 1}"#,
+            ],
+        ];
+        for text in texts {
+            let read = read(text).unwrap();
+            assert!(
+                read.iter()
+                    .all(|numbers| numbers.iter().any(|number| number.is_nan())),
+                "{text:?}: {read:?}"
+            );
+        }
+    }
+
+    // Verifies: CLI-179.
+    #[test]
+    fn lines_that_are_no_samples_are_refused_with_their_number() {
+        for (lines, expected) in [
+            (
+                &["time_s,normal_force_n"][..],
+                "-:1: no column position_mm or position_m in the header",
+            ),
+            (
+                &["# a", "position_mm,force", "1,2", "1"],
+                "-:4: 1 fields; give 2",
+            ),
+            (
+                &["position_mm,normal_force_n", "1,2", "1,x"],
+                "-:3: normal_force_n = \"x\", but must be",
+            ),
+            (
+                &["position_mm,normal_force_n", "1,inf"],
+                "-:2: normal_force_n = \"inf\", but must be",
+            ),
+            (
+                &[r#"{"position_mm": 1}"#],
+                "-:1: no column normal_force_n",
+            ),
+            (
+                &[r#"{"position_mm": 1, "normal_force_n": [1]}"#],
+                "-:1: normal_force_n = \"[1]\", but must be",
+            ),
+            (&["{"], "-:1: "),
+            (&["{}", ""], "-:1: no column position_mm"),
+        ] {
+            let error = read(lines).unwrap_err();
+            assert!(error.starts_with(expected), "{error}");
+        }
+    }
+}
