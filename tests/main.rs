@@ -29,6 +29,7 @@ mod run_command;
 mod second_opinion;
 mod study_command;
 mod vectors_suite;
+mod watch_command;
 mod witness;
 
 /// The folder of the checkout.

@@ -9,7 +9,7 @@ use palpate::version::LONG_VERSION;
 use super::error::CliError;
 use super::{
     bank, calibrate, demo, detect, devices, experiment, import, oracle, play, psychophysics, reach,
-    run, solve, study, timing,
+    run, solve, study, timing, watch,
 };
 
 /// Inclusion probing after Yan, Scott and Fearing (1999): contact forces by finite elements, detection of an inclusion, haptic playback
@@ -36,6 +36,8 @@ pub(super) enum Command {
     Bank(bank::BankArguments),
     /// Decides whether a recorded sweep shows an inclusion, using two force maps or a bank; a bank also locates it
     Detect(Box<detect::DetectArguments>),
+    /// Judges a sweep against a bank while it is taken: samples in, answers out, until the error rates allow a decision
+    Watch(watch::WatchArguments),
     /// Computes the greatest depth and the smallest size that can still be detected
     Reach(reach::ReachArguments),
     /// Propagates input uncertainty to every result, on one machine or a cluster

@@ -30,6 +30,7 @@ mod solve;
 mod study;
 mod theories;
 mod timing;
+mod watch;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -63,6 +64,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
             Command::Bank(arguments) => bank::bank(&arguments),
             Command::Detect(arguments) => detect::detect(&arguments),
+            Command::Watch(arguments) => watch::watch(&arguments),
             Command::Reach(arguments) => reach::reach(&arguments),
             Command::Study(arguments) => study::study(&arguments),
             Command::Play(arguments) => play::play(&arguments),

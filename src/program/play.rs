@@ -163,7 +163,7 @@ fn recorded_cycles(
 }
 
 /// A flag that Ctrl-C, SIGTERM or SIGHUP sets; a second signal ends the program at once, and leaves the force to the device's watchdog.
-fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
+pub(super) fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGHUP] {

@@ -1,0 +1,315 @@
+//! `palpate watch`, end to end, in pipes.
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::OnceLock;
+
+use crate::program::{Place, text};
+use palpate_asserts::assert_has;
+use serde_json::{Value, json};
+
+/// The folder with a bank of a coarse mesh and two sweeps, made once.
+fn place() -> &'static Place {
+    static PLACE: OnceLock<Place> = OnceLock::new();
+    PLACE.get_or_init(|| {
+        let place = Place::new("watch_command");
+        place.succeed(
+            "bank --phantom 4.6 --offsets-mm=-4:4:2 --depths-mm 3.6,4.6 --probe-depth-mm 4 --laterals-mm=-8:8:1 --mesh-mm 2 --out bank.json",
+        );
+        place.succeed("demo demo");
+        place
+    })
+}
+
+const WATCH: &str = "watch --bank bank.json --noise-sd-n 0.1";
+
+fn start(line: &str) -> Child {
+    let mut command = place().palpate(line);
+    let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped());
+    piped.stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// The lines of JSON, the exit code and what is on standard error, for an input.
+fn watched(line: &str, input: &str) -> (Vec<Value>, i32, String) {
+    let mut child = start(line);
+    let mut pipe = child.stdin.take().unwrap();
+    let input = input.to_owned();
+    let writer = std::thread::spawn(move || {
+        // A program that refuses a line does not read the rest.
+        let _ = pipe.write_all(input.as_bytes());
+    });
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    let answers = text(&output.stdout).lines();
+    let answers = answers.map(|line| serde_json::from_str(line).unwrap());
+    (
+        answers.collect(),
+        output.status.code().unwrap(),
+        text(&output.stderr).into(),
+    )
+}
+
+/// The rows of a sweep below its header.
+fn sweep(name: &str) -> String {
+    place().read(&format!("demo/{name}.csv"))
+}
+
+fn detected(name: &str) -> Value {
+    let line = format!(
+        "detect demo/{name}.csv --model exact --bank bank.json --noise-sd-n 0.1 --known depth,variance --format json"
+    );
+    serde_json::from_str(&place().succeed(&line)).unwrap()
+}
+
+// Verifies: SEQ-025, CLI-180, CLI-181.
+#[test]
+fn the_last_answer_is_that_of_detect() {
+    for (name, decision) in [
+        ("sweep-with", "inclusion"),
+        ("sweep-without", "no_inclusion"),
+    ] {
+        let (answers, code, error) = watched(WATCH, &sweep(name));
+        assert_eq!((answers.len(), code, &*error), (402, 0, ""), "{name}");
+        let (last, before) = (&answers[401], &answers[400]);
+        let batch = detected(name);
+        for (live, of_batch) in [("theta", "theta_mixture"), ("posterior_h1", "posterior_h1")] {
+            let [live, of_batch] = [&last[live], &batch[of_batch]].map(|of| of.as_f64().unwrap());
+            assert!((live - of_batch).abs() < 1e-9, "{name}: {live} {of_batch}");
+        }
+        assert_eq!(
+            (&last["decision"], &batch["decision"]),
+            (&json!(decision), &json!(decision))
+        );
+        assert_eq!(
+            (&last["schema"], &last["is_last"], &before["is_last"]),
+            (&json!("palpate-watch"), &json!(true), &json!(false))
+        );
+        for key in [
+            "samples",
+            "theta",
+            "posterior_h1",
+            "decision",
+            "decided_at_sample",
+            "likeliest",
+        ] {
+            assert_eq!(last[key], before[key], "{key}");
+        }
+        assert_eq!(
+            (&last["places"], &last["covered"], &last["samples"]),
+            (&json!(10), &json!(10), &json!(401))
+        );
+        // The first with a decision, and none before it.
+        let decided = last["decided_at_sample"].as_u64().unwrap() as usize;
+        assert!(decided > 10 && decided < 300, "{name}: {decided}");
+        assert!(
+            answers[..decided - 1]
+                .iter()
+                .all(|answer| answer["decision"].is_null())
+        );
+        assert_eq!(answers[decided - 1]["samples"], decided);
+        // (2.326 + 1.645)², and ln 100 and ln 20.
+        let near = |found: &Value, expected: f64| {
+            assert!((found.as_f64().unwrap() - expected).abs() < 1e-3, "{found}")
+        };
+        near(&last["fixed_length_gamma_squared"], 15.7704);
+        let (a, b) = (0.01 * 0.95 / 0.9995, 0.05 * 0.99 / 0.9995);
+        let [upper, lower] = [4.605170, -2.995732];
+        near(
+            &last["mean_gamma_squared"][0],
+            -2.0 * (a * upper + (1.0 - a) * lower),
+        );
+        near(
+            &last["mean_gamma_squared"][1],
+            2.0 * ((1.0 - b) * upper + b * lower),
+        );
+    }
+}
+
+// Verifies: CLI-179, SEQ-024.
+#[test]
+fn csv_and_json_say_the_same_and_gaps_are_counted() {
+    let csv = sweep("sweep-with");
+    let rows = csv
+        .lines()
+        .filter(|line| !line.starts_with('#'))
+        .skip(1)
+        .take(80);
+    let json: Vec<String> = rows
+        .map(|row| {
+            let fields: Vec<f64> = row.split(',').map(|field| field.parse().unwrap()).collect();
+            let header = csv
+                .lines()
+                .find(|line| line.starts_with("position_mm"))
+                .unwrap();
+            let pairs = header
+                .split(',')
+                .zip(fields)
+                .map(|(key, value)| (key.to_string(), json!(value)));
+            Value::Object(pairs.collect()).to_string()
+        })
+        .collect();
+    let (of_json, code, _) = watched(WATCH, &json.join("\n"));
+    let above: Vec<&str> = csv
+        .lines()
+        .take(
+            csv.lines()
+                .position(|line| line.starts_with("position_mm"))
+                .unwrap()
+                + 81,
+        )
+        .collect();
+    let (of_csv, _, error) = watched(WATCH, &above.join("\n"));
+    assert_eq!((of_json.len(), code), (81, 3));
+    assert_eq!(of_json, of_csv);
+    assert_has(&error, "palpate: -: undecided: an inclusion is open at ");
+    let gaps = "position_mm,lateral_force_n,normal_force_n\n0,,1\n0,0,nan\n8.1,0,1\n";
+    let (answers, code, _) = watched(WATCH, gaps);
+    let last = answers.last().unwrap();
+    assert_eq!(
+        (
+            answers.len(),
+            code,
+            &last["samples"],
+            &last["missing"],
+            &last["outside"]
+        ),
+        (4, 3, &json!(0), &json!(2), &json!(1))
+    );
+    assert_eq!(
+        (
+            &last["posterior_h1"],
+            &last["likeliest"],
+            &last["open_positions_m"].as_array().unwrap().len()
+        ),
+        (&json!(0.5), &Value::Null, &5)
+    );
+}
+
+/// A program that runs, its input, and its output line by line.
+fn running(line: &str) -> (Child, ChildStdin, BufReader<ChildStdout>) {
+    let mut child = start(line);
+    let (input, output) = (child.stdin.take().unwrap(), child.stdout.take().unwrap());
+    (child, input, BufReader::new(output))
+}
+
+fn next(output: &mut impl BufRead) -> Value {
+    let mut line = String::new();
+    output.read_line(&mut line).unwrap();
+    serde_json::from_str(&line).unwrap_or_else(|error| panic!("{line:?}: {error}"))
+}
+
+// Verifies: CLI-180, CLI-181.
+#[test]
+fn an_answer_follows_each_sample_at_once_and_a_signal_ends_it_with_the_last() {
+    let (mut child, mut input, mut output) = running(WATCH);
+    writeln!(input, "position_mm,normal_force_n").unwrap();
+    for (number, position) in (1..).zip([0.0, 0.5, 1.0]) {
+        writeln!(input, "{position},1.5").unwrap();
+        let answer = next(&mut output);
+        assert_eq!(
+            (&answer["samples"], &answer["is_last"]),
+            (&json!(number), &json!(false))
+        );
+    }
+    // The input stays open.
+    let signal = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(signal.success());
+    let answer = next(&mut output);
+    assert_eq!(
+        (&answer["samples"], &answer["is_last"]),
+        (&json!(3), &json!(true))
+    );
+    assert_eq!(child.wait().unwrap().code(), Some(3));
+    drop(input);
+}
+
+// Verifies: CLI-003, CLI-180.
+#[test]
+fn a_reader_that_goes_away_ends_it_quietly() {
+    let (child, mut input, mut output) = running(WATCH);
+    writeln!(input, "position_mm,normal_force_n\n0,1.5").unwrap();
+    assert_eq!(next(&mut output)["samples"], 1);
+    drop(output);
+    writeln!(input, "0.5,1.5").unwrap();
+    let ended = child.wait_with_output().unwrap();
+    assert_eq!((ended.status.code(), text(&ended.stderr)), (Some(0), ""));
+}
+
+// Verifies: CLI-180.
+#[test]
+fn an_answer_that_is_not_due_is_left_out_but_for_decisions_and_the_last() {
+    let (answers, ..) = watched(
+        &format!("{WATCH} --every-ms 10000000"),
+        &sweep("sweep-with"),
+    );
+    let samples: Vec<_> = answers
+        .iter()
+        .map(|answer| answer["samples"].as_u64().unwrap())
+        .collect();
+    let decided = answers[1]["decided_at_sample"].as_u64().unwrap();
+    assert_eq!(samples, [1, decided, 401]);
+}
+
+// Verifies: CLI-179, CLI-181.
+#[test]
+fn what_cannot_be_watched_is_refused_after_what_could() {
+    let header = "position_mm,normal_force_n\n";
+    for (line, input, answers, expected) in [
+        (WATCH, "", 0, "-: standard input has no samples"),
+        (
+            WATCH,
+            "time_s,normal_force_n\n1,2\n",
+            0,
+            "-:1: no column position_mm or position_m",
+        ),
+        (
+            WATCH,
+            &format!("{header}0,1\n0,x\n0,1\n"),
+            1,
+            "-:3: normal_force_n = \"x\"",
+        ),
+        (
+            WATCH,
+            &format!("{header}0,1e60\n"),
+            0,
+            "-:2: normal force is",
+        ),
+        (
+            "watch --bank bank.json",
+            header,
+            0,
+            "the noise cannot be estimated",
+        ),
+        (
+            &format!("{WATCH} --max-false-alarm 0.6 --max-miss 0.6"),
+            header,
+            0,
+            "max_false_alarm + max_miss is 1.2",
+        ),
+        (
+            "watch --bank no.json --noise-sd-n 1",
+            header,
+            0,
+            "no.json: cannot be read",
+        ),
+    ] {
+        let (found, code, error) = watched(line, input);
+        assert_eq!(
+            (found.len(), code, error.lines().count()),
+            (answers, 2, 1),
+            "{line}: {error}"
+        );
+        assert!(
+            error.starts_with(&format!("palpate: {expected}")),
+            "{error}"
+        );
+    }
+    let long = format!("{header}{}\n", " ".repeat(70_000));
+    assert_has(
+        &watched(WATCH, &long).2,
+        "a line is longer than 65536 bytes",
+    );
+}
