@@ -22,7 +22,7 @@ use palpate::detect::sequential::Wald;
 use palpate::detect::{Decision, required_gamma};
 use palpate::trace::{LiveSamples, Unknown, reasons, refused};
 
-/// The longest line, bytes.
+/// What is read as one line at most, bytes.
 const LONGEST_LINE: u64 = 1 << 16;
 /// Lines that wait at most: beyond, the writer waits.
 const WAITING: usize = 1024;
@@ -73,18 +73,11 @@ struct Line<'a> {
     #[serde(flatten)]
     answer: &'a WatchAnswer,
     is_last: bool,
-    /// With the last line.
-    #[serde(flatten)]
-    needed: Option<Needed>,
-}
-
-/// How much signal a test of one place with these rates needs.
-#[derive(Serialize)]
-struct Needed {
-    /// By a test of fixed length, γ².
-    fixed_length_gamma_squared: f64,
-    /// By the sequential test in the mean, γ², without an inclusion and with it.
-    mean_gamma_squared: [f64; 2],
+    /// γ² that a test of one place with these rates needs: of fixed length, and in the mean without and with an inclusion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fixed_length_gamma_squared: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mean_gamma_squared: Option<[f64; 2]>,
 }
 
 /// Runs the command.
@@ -93,170 +86,120 @@ struct Needed {
 pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
     let bank = Bank::read(&arguments.bank)?;
     let prior = arguments.prior.as_ref();
-    let prior = prior.map(|file| bank.read_prior(file)).transpose()?;
     let Some(noise_sd) = arguments.noise_sd.get() else {
         refuse!(
             "the noise cannot be estimated while a sweep is taken; give --noise-sd-n, or one for each force"
         );
     };
-    let test = Wald::new(arguments.max_false_alarm, arguments.max_miss).map_err(refused)?;
     let unknown = arguments.known.unknown.iter().copied();
-    let unknown: Vec<_> = unknown.filter(|of| *of != Unknown::Variance).collect();
     let question = WatchQuestion {
-        unknown: &unknown,
+        unknown: unknown.filter(|of| *of != Unknown::Variance).collect(),
         noise_sd,
-        has_lateral: false,
         is_zeroed: arguments.zeroed,
         prior_h1: arguments.prior_h1,
-        prior: prior.as_deref(),
-        test,
+        prior: prior.map(|file| bank.read_prior(file)).transpose()?,
+        test: Wald::new(arguments.max_false_alarm, arguments.max_miss).map_err(refused)?,
     };
-    // What is wrong with the question is told before the first sample.
-    Watcher::new(&bank, &question)?;
-    let (mut samples, mut watcher) = (LiveSamples::new("-", arguments.layout.get()?), None);
-    let mut out = Answers {
-        every: Duration::from_millis(arguments.every_ms),
-        last: None,
-    };
+    let mut watcher = Watcher::new(&bank, &question)?;
+    let mut samples = LiveSamples::new("-", arguments.layout.get()?);
+    let (mut answer, mut written) = (None, None::<(Instant, Option<Decision>)>);
     let (stop, lines) = (stop_on_signals()?, lines());
     while let Some(line) = next(&lines, &stop) {
-        let Some((position, forces)) = samples.sample(&line?)? else {
+        let Some((position, lateral, normal)) = samples.sample(&line)? else {
             continue;
         };
-        let watcher = match &mut watcher {
-            Some(watcher) => watcher,
-            none => {
-                let has_lateral = samples.has_lateral();
-                none.insert(Watcher::new(
-                    &bank,
-                    &WatchQuestion {
-                        has_lateral,
-                        ..question
-                    },
-                )?)
+        let pushed = watcher.push(position, lateral, normal);
+        let found = pushed.and_then(|()| watcher.answer());
+        let found = found.map_err(|error| samples.refused(refused(error)))?;
+        let decision = found.decision;
+        let is_due = written.is_none_or(|(at, before)| {
+            at.elapsed() >= Duration::from_millis(arguments.every_ms) || before != decision
+        });
+        if is_due {
+            written = Some((Instant::now(), decision));
+            if !write(&found, None)? {
+                return Ok(());
             }
-        };
-        let pushed = watcher
-            .push(position, forces)
-            .and_then(|()| watcher.answer());
-        let answer = pushed.map_err(|error| samples.refused(refused(error)))?;
-        if out.is_due(&answer) && !out.write(&answer, None)? {
-            return Ok(());
         }
+        answer = Some(found);
     }
-    let Some(watcher) = watcher else {
+    let Some(answer) = answer else {
         refuse!(
             "-: standard input has no samples; give a header and at least one row, or JSON objects"
         );
     };
-    let answer = watcher.answer().map_err(refused)?;
-    if !out.write(&answer, Some(needed(&test)?))? || answer.decision.is_some() {
-        return Ok(());
+    match write(&answer, Some(&question.test))? && answer.decision.is_none() {
+        true => Err(CliError::Unjudged(why_undecided(&answer))),
+        false => Ok(()),
     }
-    Err(CliError::Unjudged(why_undecided(&answer)))
-}
-
-fn needed(test: &Wald) -> Result<Needed, CliError> {
-    let rates = test.rates();
-    let gamma = required_gamma(rates.false_alarm, rates.miss).map_err(refused)?;
-    let truths = [Decision::NoInclusion, Decision::Inclusion];
-    Ok(Needed {
-        fixed_length_gamma_squared: gamma * gamma,
-        mean_gamma_squared: truths.map(|truth| test.mean_gamma_squared(truth)),
-    })
 }
 
 /// Implements: CLI-181.
 fn why_undecided(answer: &WatchAnswer) -> String {
-    if answer.causes.is_empty() {
-        let (open, places) = (answer.places - answer.excluded, answer.places);
-        let uncovered = places - answer.covered;
+    let WatchAnswer {
+        causes,
+        places,
+        covered,
+        excluded,
+        ..
+    } = answer;
+    if causes.is_empty() {
+        let [open, uncovered] = [places - excluded, places - covered];
         return format!(
             "-: undecided: an inclusion is open at {open} of {places} places, of which the path has not covered {uncovered}"
         );
     }
-    format!("-: cannot be judged: {}", reasons(&answer.causes))
+    format!("-: cannot be judged: {}", reasons(causes))
 }
 
 /// The lines of standard input, which another thread reads, so that a signal need not wait for the next one.
-fn lines() -> Receiver<Result<String, CliError>> {
+fn lines() -> Receiver<String> {
     let (to, lines) = sync_channel(WAITING);
     thread::spawn(move || {
-        let mut input = stdin().lock();
-        loop {
-            let mut line = Vec::new();
-            let read = input
-                .by_ref()
-                .take(LONGEST_LINE + 1)
-                .read_until(b'\n', &mut line);
-            let text = match read {
-                Ok(0) => return,
-                Ok(length) if length as u64 > LONGEST_LINE => {
-                    Err(format!("a line is longer than {LONGEST_LINE} bytes"))
-                }
-                Ok(_) => String::from_utf8(line).map_err(|_| "a line is no UTF-8".into()),
-                Err(error) => Err(error.to_string()),
-            };
-            let is_over = text.is_err();
-            let text = text.map_err(|error| CliError::Usage(format!("-: standard input: {error}")));
-            // Nobody listens any more, or nothing more can be read.
-            if to.send(text).is_err() || is_over {
-                return;
+        let (mut input, mut line) = (stdin().lock(), Vec::new());
+        let mut read =
+            |line: &mut Vec<u8>| input.by_ref().take(LONGEST_LINE).read_until(b'\n', line);
+        while read(&mut line).is_ok_and(|length| length > 0) {
+            let text = String::from_utf8_lossy(&line).into_owned();
+            if to.send(text).is_err() {
+                break;
             }
+            line.clear();
         }
     });
     lines
 }
 
 /// The next line; none at the end of the input, or after a signal.
-fn next(
-    lines: &Receiver<Result<String, CliError>>,
-    stop: &AtomicBool,
-) -> Option<Result<String, CliError>> {
+fn next(lines: &Receiver<String>, stop: &AtomicBool) -> Option<String> {
     while !stop.load(Ordering::Relaxed) {
         match lines.recv_timeout(LOOK) {
-            Ok(line) => return Some(line),
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => return None,
+            line => return line.ok(),
         }
     }
     None
 }
 
-/// What is written, and when.
-struct Answers {
-    every: Duration,
-    /// When the last answer was written, and its decision.
-    last: Option<(Instant, Option<Decision>)>,
-}
-
-impl Answers {
-    /// Implements: CLI-180.
-    fn is_due(&self, answer: &WatchAnswer) -> bool {
-        self.last
-            .is_none_or(|(at, decision)| at.elapsed() >= self.every || answer.decision != decision)
-    }
-
-    /// Writes a line; whether somebody still reads.
-    ///
-    /// Implements: CLI-180, CLI-181.
-    fn write(&mut self, answer: &WatchAnswer, needed: Option<Needed>) -> Result<bool, CliError> {
-        let is_last = needed.is_some();
-        let line = Envelope::new(
-            "palpate-watch",
-            1,
-            Line {
-                answer,
-                is_last,
-                needed,
-            },
-        );
-        // Keys are strings, and nothing else could fail.
-        let line = serde_json::to_string(&line).unwrap_or_default() + "\n";
-        let mut out = stdout().lock();
-        let written = out.write_all(line.as_bytes()).and_then(|()| out.flush());
-        self.last = Some((Instant::now(), answer.decision));
-        let is_read = written.is_ok();
-        printed(written).map(|()| is_read)
-    }
+/// Writes an answer, the last one with what `test` needs; whether somebody still reads.
+///
+/// Implements: CLI-180, CLI-181.
+fn write(answer: &WatchAnswer, test: Option<&Wald>) -> Result<bool, CliError> {
+    let needed = test.map(|test| {
+        let gamma = required_gamma(test.rates().false_alarm, test.rates().miss);
+        gamma.map(|gamma| gamma * gamma).map_err(refused)
+    });
+    let truths = [Decision::NoInclusion, Decision::Inclusion];
+    let line = Line {
+        answer,
+        is_last: test.is_some(),
+        fixed_length_gamma_squared: needed.transpose()?,
+        mean_gamma_squared: test.map(|test| truths.map(|truth| test.mean_gamma_squared(truth))),
+    };
+    // Keys are strings, and nothing else could fail.
+    let line = serde_json::to_string(&Envelope::new("palpate-watch", 1, line)).unwrap_or_default();
+    let mut out = stdout().lock();
+    let written = writeln!(out, "{line}").and_then(|()| out.flush());
+    let is_read = written.is_ok();
+    printed(written).map(|()| is_read)
 }

@@ -9,6 +9,11 @@ use crate::stats::normal::{lower_tail, quantile_of as quantile};
 
 /// Ĥ of equation (9).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize),
+    serde(rename_all = "snake_case")
+)]
 pub enum Decision {
     /// Ĥ = 0: no inclusion.
     NoInclusion,

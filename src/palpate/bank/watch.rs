@@ -1,6 +1,6 @@
 //! A sweep against a bank while it is taken: what each sample adds, and when it is enough (`spec/sequential.md`).
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 use super::Bank;
 use crate::detect::mixture::mixture_theta;
@@ -26,20 +26,18 @@ const MOST_COLUMNS: usize = 6;
 /// What is known of a sweep that is being taken, and what is asked.
 ///
 /// Implements: SEQ-002.
-#[derive(Debug, Clone, Copy)]
-pub struct WatchQuestion<'a> {
+#[derive(Debug, Clone)]
+pub struct WatchQuestion {
     /// What is not known of the sweep; of the standard deviation of the noise nothing may be.
-    pub unknown: &'a [Unknown],
+    pub unknown: Vec<Unknown>,
     /// Standard deviation of a sample of either force, N.
     pub noise_sd: Force<f64>,
-    /// Whether the sensor has a lateral force.
-    pub has_lateral: bool,
     /// Whether the sensor was set to zero on the gel, so that its forces say nothing of contact.
     pub is_zeroed: bool,
     /// Pr(H = 1) before the sweep.
     pub prior_h1: f64,
     /// The probability of each of the bank's maps, given an inclusion; none if all are equally probable.
-    pub prior: Option<&'a [f64]>,
+    pub prior: Option<Vec<f64>>,
     /// The rates of false answers.
     pub test: Wald,
 }
@@ -47,12 +45,7 @@ pub struct WatchQuestion<'a> {
 /// Judges a sweep sample by sample.
 #[derive(Debug, Clone)]
 pub struct Watcher {
-    unknown: Vec<Unknown>,
-    noise_sd: Force<f64>,
-    has_lateral: bool,
-    is_zeroed: bool,
-    prior_h1: f64,
-    test: Wald,
+    question: WatchQuestion,
     prior: Vec<f64>,
     points: Vec<[f64; 4]>,
     laterals: Vec<f64>,
@@ -85,7 +78,6 @@ pub struct WatchAnswer {
     /// ln of the likelihood ratio of an inclusion at any point.
     pub theta: f64,
     /// Ĥ, if it is answered.
-    #[serde(serialize_with = "decision")]
     pub decision: Option<Decision>,
     /// The number of the sample that answered.
     pub decided_at_sample: Option<usize>,
@@ -120,14 +112,6 @@ pub struct LikeliestPlace {
     pub probability: f64,
 }
 
-fn decision<S: Serializer>(decision: &Option<Decision>, to: S) -> Result<S::Ok, S::Error> {
-    let name = decision.map(|decision| match decision {
-        Decision::Inclusion => "inclusion",
-        Decision::NoInclusion => "no_inclusion",
-    });
-    name.serialize(to)
-}
-
 impl Watcher {
     /// Before the first sample.
     ///
@@ -136,14 +120,12 @@ impl Watcher {
     /// a prior that is none, or of another length.
     ///
     /// Implements: SEQ-002.
-    pub fn new(bank: &Bank, question: &WatchQuestion<'_>) -> Result<Watcher, Refusal> {
-        let level = Refusal::state(
-            "the noise of a sweep that is being taken cannot be estimated",
-            "state its standard deviation, and leave variance out of what is unknown",
-        );
-        level.when(question.unknown.contains(&Unknown::Variance))?;
+    pub fn new(bank: &Bank, question: &WatchQuestion) -> Result<Watcher, Refusal> {
+        let found = "the noise of a sweep that is being taken cannot be estimated";
+        let remedy = "state its standard deviation, and leave variance out of what is unknown";
+        Refusal::state(found, remedy).when(question.unknown.contains(&Unknown::Variance))?;
         let maps = bank.maps().len();
-        let prior = question.prior.map(<[f64]>::to_vec);
+        let prior = question.prior.clone();
         let prior = prior.unwrap_or_else(|| vec![1.0 / maps as f64; maps]);
         let checked = || {
             check_positive("noise_sd_lateral_n", question.noise_sd.lateral)?;
@@ -161,12 +143,10 @@ impl Watcher {
         let laterals = bank.reference().table().laterals();
         let expected = expected(bank, question)?;
         Ok(Watcher {
-            unknown,
-            noise_sd: question.noise_sd,
-            has_lateral: question.has_lateral,
-            is_zeroed: question.is_zeroed,
-            prior_h1: question.prior_h1,
-            test: question.test,
+            question: WatchQuestion {
+                unknown,
+                ..question.clone()
+            },
             prior,
             points: (0..maps).map(|map| bank.point(map)).collect(),
             at_sample: vec![0.0; expected.len() / (2 * laterals.len())],
@@ -181,48 +161,43 @@ impl Watcher {
         })
     }
 
-    /// Adds a sample: position (m) and forces (N). A NaN is missing; a sensor without a lateral force may give anything for it.
+    /// Adds a sample: position (m), lateral force, unless the sensor has none, and normal force (N). A NaN is missing.
     ///
     /// # Errors
-    /// A number that is infinite, or a force that is absurd; the sample then does not count.
+    /// A number that is infinite or a force that is absurd; the sample then does not count.
     ///
     /// Implements: SEQ-020, SEQ-024.
-    pub fn push(&mut self, position: f64, forces: Force<f64>) -> Result<(), DetectError> {
-        let lateral = if self.has_lateral {
-            forces.lateral
-        } else {
-            0.0
-        };
-        let white = [
-            lateral / self.noise_sd.lateral,
-            forces.normal / self.noise_sd.normal,
+    pub fn push(&mut self, x: f64, lateral: Option<f64>, normal: f64) -> Result<(), DetectError> {
+        let sd = self.question.noise_sd;
+        let (lateral, normal) = (lateral.map(|force| force / sd.lateral), normal / sd.normal);
+        let numbers = [x, lateral.unwrap_or(0.0), normal];
+        let names = [
+            "position",
+            "lateral force over its noise",
+            "normal force over its noise",
         ];
-        for (what, value, size) in [
-            ("position", position, position),
-            ("lateral force", lateral, white[0]),
-            ("normal force", forces.normal, white[1]),
-        ] {
-            let is_right = value.is_nan() || size.abs() <= MOST;
+        for (what, number) in names.into_iter().zip(numbers) {
+            let is_right = number.is_nan() || number.abs() <= MOST;
             in_range(
                 is_right,
                 what,
-                value,
-                "finite, at most 1e50 times the noise, or NaN where it is missing",
+                number,
+                "at most 1e50, or NaN where it is missing",
             )?;
         }
-        if (position + lateral + forces.normal).is_nan() {
+        if numbers.iter().any(|number| number.is_nan()) {
             self.missing += 1;
             return Ok(());
         }
-        let Some(place) = Place::within(&self.laterals, position) else {
+        let Some(place) = Place::within(&self.laterals, x) else {
             self.outside += 1;
             return Ok(());
         };
-        if self.has_lateral {
-            self.push_row(place, 0, white[0])?;
+        if let Some(lateral) = lateral {
+            self.push_row(place, 0, lateral)?;
         }
-        self.push_row(place, 1, white[1])?;
-        self.contact[0] += white[1] * self.at_sample[0];
+        self.push_row(place, 1, normal)?;
+        self.contact[0] += normal * self.at_sample[0];
         self.contact[1] += self.at_sample[0] * self.at_sample[0];
         self.samples += 1;
         self.judge()
@@ -239,9 +214,9 @@ impl Watcher {
             *value = (1.0 - place.fraction) * a + place.fraction * b;
         }
         let (expected, signals) = self.at_sample.split_at(length - self.points.len());
-        let unit = 1.0 / self.noise_sd.into_array()[channel];
+        let unit = 1.0 / self.question.noise_sd.into_array()[channel];
         let (mut nuisances, mut used) = ([0.0; MOST_COLUMNS], 0);
-        for &unknown in &self.unknown {
+        for &unknown in &self.question.unknown {
             let (at, value) = match unknown {
                 Unknown::Offset => (channel, unit),
                 Unknown::Drift => (channel, unit * self.samples as f64),
@@ -265,7 +240,8 @@ impl Watcher {
         }
         let largest = best.map_or(0.0, |(_, of)| of.theta());
         // The mixture is at most the largest, and takes long.
-        let is_there = largest >= self.test.upper() && self.theta()? >= self.test.upper();
+        let is_there =
+            largest >= self.question.test.upper() && self.theta()? >= self.question.test.upper();
         let answer = if is_there {
             Some(Decision::Inclusion)
         } else {
@@ -297,12 +273,12 @@ impl Watcher {
 
     /// Implements: SEQ-021.
     fn is_covered(&self, of: Evidence) -> bool {
-        of.gamma_squared >= -2.0 * self.test.lower()
+        of.gamma_squared >= -2.0 * self.question.test.lower()
     }
 
     /// Implements: SEQ-021.
     pub(super) fn is_excluded(&self, of: Evidence) -> bool {
-        self.is_covered(of) && of.theta() <= self.test.lower()
+        self.is_covered(of) && of.theta() <= self.question.test.lower()
     }
 
     /// Why nothing can be answered.
@@ -310,7 +286,7 @@ impl Watcher {
     /// Implements: SEQ-023.
     fn causes(&self, likeliest: Option<(usize, Evidence)>) -> impl Iterator<Item = Cause> + use<> {
         let [cross, squares] = self.contact;
-        let is_in_air = !self.is_zeroed && cross.abs() < LEAST_LEVEL * squares;
+        let is_in_air = !self.question.is_zeroed && cross.abs() < LEAST_LEVEL * squares;
         let told = likeliest.map_or(0.0, |(_, of)| of.along * of.along / of.gamma_squared);
         let degrees =
             self.found.rows() as f64 - self.found.rank() as f64 - f64::from(likeliest.is_some());
@@ -350,7 +326,7 @@ impl Watcher {
             samples: self.samples,
             missing: self.missing,
             outside: self.outside,
-            posterior_h1: posterior(theta, self.prior_h1)?,
+            posterior_h1: posterior(theta, self.question.prior_h1)?,
             theta,
             decision: answered.map(|(decision, _)| decision),
             decided_at_sample: answered.map(|(_, sample)| sample),
@@ -386,7 +362,7 @@ fn columns(unknown: &[Unknown]) -> usize {
 }
 
 /// As [`Watcher::expected`].
-fn expected(bank: &Bank, question: &WatchQuestion<'_>) -> Result<Vec<f64>, Refusal> {
+fn expected(bank: &Bank, question: &WatchQuestion) -> Result<Vec<f64>, Refusal> {
     let (reference, depth) = (bank.reference().table(), bank.depth());
     let (laterals, depths) = (reference.laterals(), reference.depths());
     let of = |map: &ForceTable, depth| map.sweep(depth, laterals).map(stacked);

@@ -93,7 +93,11 @@ impl<const N: usize> Rows<N> {
     ) -> Result<Read<N>, Refusal> {
         layout.check(&columns)?;
         let lines = lines(text, layout);
-        let header = Header::expected(&lines, columns, expected, layout)?;
+        let header = Header::find(&lines, columns, layout);
+        let header = header.map_err(|(found, (line, header))| {
+            let found = format!("{found} in the header {:?}", shortened(header.trim()));
+            Refusal::state(found, format!("give {expected}")).at(line)
+        })?;
         let mut notes = header.notes(&lines);
         let rows = &lines[header.below..];
         let footer = header.footer(rows);
@@ -124,35 +128,6 @@ impl<const N: usize> Rows<N> {
         let missing = first.map(|first| (missing.len(), first));
         Ok(Read { rows, missing })
     }
-}
-
-/// The numbers of one row below a header, each with its line, as [`Rows::parse_last_optional`] reads them: all NaN where one is missing,
-/// and the last 0 where the header lacks it, which the second answer tells.
-///
-/// # Errors
-/// As [`Rows::parse`].
-///
-/// Implements: CLI-179.
-pub fn row_below<const M: usize, const N: usize>(
-    header: (usize, &str),
-    row: Option<(usize, &str)>,
-    columns: [Column; N],
-    expected: &str,
-    layout: &Layout,
-) -> Result<([f64; N], bool), Refusal> {
-    const { assert!(M + 1 == N) };
-    layout.check(&columns)?;
-    let others: [Column; M] = std::array::from_fn(|at| columns[at]);
-    let found = Header::expected(&[header], others, expected, layout)?;
-    let is_there = layout.states(columns[M]) || found.fields.iter().any(|of| names(of, columns[M]));
-    let numbers = match is_there {
-        true => Header::expected(&[header], columns, expected, layout)?.row(row)?,
-        false => {
-            let numbers = found.row(row)?;
-            std::array::from_fn(|at| numbers.get(at).copied().unwrap_or(0.0))
-        }
-    };
-    Ok((numbers, is_there))
 }
 
 /// A table without the rows in which a number is missing.
@@ -261,20 +236,6 @@ impl<'a, const N: usize> Header<'a, N> {
         }
     }
 
-    /// As [`Header::find`]; `expected` says to a person what is right.
-    fn expected(
-        lines: &[(usize, &'a str)],
-        columns: [Column; N],
-        expected: &str,
-        layout: &Layout,
-    ) -> Result<Header<'a, N>, Refusal> {
-        let header = Header::find(lines, columns, layout);
-        header.map_err(|(found, (line, header))| {
-            let found = format!("{found} in the header {:?}", shortened(header.trim()));
-            Refusal::state(found, format!("give {expected}")).at(line)
-        })
-    }
-
     /// The columns in one line.
     ///
     /// Implements: MAP-040.
@@ -376,18 +337,6 @@ impl<'a, const N: usize> Header<'a, N> {
             field.is_empty() || field.eq_ignore_ascii_case("nan")
         };
         fields.len() == self.fields.len() && self.found.iter().any(is_missing)
-    }
-
-    /// The numbers of a row, all NaN where one is missing, or there is no row.
-    fn row(&self, row: Option<(usize, &str)>) -> Result<[f64; N], Refusal> {
-        // Where commas separate the fields, none is a decimal comma.
-        let mut mark = (self.separator == ',').then_some('.');
-        match row.filter(|(_, row)| !self.lacks(row)) {
-            None => Ok([f64::NAN; N]),
-            Some((line, row)) => self
-                .numbers(row, &mut mark)
-                .map_err(|refusal| refusal.at(line)),
-        }
     }
 
     /// The numbers of a row, in SI; the first decimal mark that is there sets that of the file.

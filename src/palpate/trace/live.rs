@@ -3,46 +3,49 @@
 use serde_json::{Map, Value};
 
 use super::COLUMNS;
-use crate::csv::{Column, Layout, row_below};
-use crate::force::Force;
+use crate::csv::{Column, Layout, Rows};
 use crate::refusal::Refusal;
 
 /// Those of a trace over positions.
 const LIVE: [Column; 3] = [&[COLUMNS[0][0]], COLUMNS[1], COLUMNS[2]];
-
 /// The headers that are right, for a person.
 const EXPECTED: &str = "position_mm,lateral_force_n,normal_force_n, in any order, also position_m and forces as _mn, or say with --columns what each holds";
 
 /// Reads samples from the lines of a stream: CSV with a header as of a trace over positions, or objects of JSON with its columns as keys.
 ///
 /// ```
-/// use palpate::force::Force;
 /// use palpate::trace::LiveSamples;
 ///
 /// let mut csv = LiveSamples::new("-", Default::default());
 /// assert_eq!(csv.sample("position_mm,normal_force_n")?, None);
-/// assert_eq!(csv.sample("-1,1.5")?, Some((-1e-3, Force::new(0.0, 1.5))));
-/// assert!(!csv.has_lateral());
+/// assert_eq!(csv.sample("-1,1.5")?, Some((-1e-3, None, 1.5)));
 /// let mut json = LiveSamples::new("-", Default::default());
 /// let sample = json.sample(r#"{"position_mm": -1, "lateral_force_n": 0.25, "normal_force_n": 1.5}"#)?;
-/// assert_eq!(sample, Some((-1e-3, Force::new(0.25, 1.5))));
+/// assert_eq!(sample, Some((-1e-3, Some(0.25), 1.5)));
 /// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct LiveSamples {
     file: String,
     layout: Layout,
+    /// Lines at the start that are no samples.
+    skipped: usize,
     line: usize,
-    /// The header of CSV with its line.
-    header: Option<(usize, String)>,
+    /// The header of CSV.
+    header: Option<String>,
+    /// Whether the first sample has a lateral force.
     has_lateral: Option<bool>,
 }
 
+/// Position (m), lateral force, if the sensor has it, and normal force (N).
+type LiveSample = (f64, Option<f64>, f64);
+
 impl LiveSamples {
     /// Before the first line; in messages `file` is where the lines come from.
-    pub fn new(file: &str, layout: Layout) -> LiveSamples {
+    pub fn new(file: &str, mut layout: Layout) -> LiveSamples {
         LiveSamples {
             file: file.into(),
+            skipped: std::mem::take(&mut layout.skipped),
             layout,
             line: 0,
             header: None,
@@ -50,77 +53,62 @@ impl LiveSamples {
         }
     }
 
-    /// Whether the samples have lateral forces, as the header or the first object says.
-    pub fn has_lateral(&self) -> bool {
-        self.has_lateral.unwrap_or(false)
-    }
-
-    /// The same refusal at the last line.
+    /// A refusal of the last line.
     pub fn refused(&self, refusal: Refusal) -> Refusal {
         refusal.at(self.line).in_file(&*self.file)
     }
 
-    /// The position (m) and the forces (N) of the next line, NaN where a number is missing; nothing of a header, a comment or a blank
-    /// line.
+    /// The position (m), the lateral force, if the header or the first object has it, and the normal force (N) of the next line, NaN where
+    /// a number is missing; nothing of a header, a comment or a blank line.
     ///
     /// # Errors
     /// A header or object that does not name the columns, a field that is no finite decimal number, text that is no JSON; with the line.
     ///
     /// Implements: CLI-179.
-    pub fn sample(&mut self, text: &str) -> Result<Option<(f64, Force<f64>)>, Refusal> {
+    pub fn sample(&mut self, text: &str) -> Result<Option<LiveSample>, Refusal> {
         self.line += 1;
-        let text = text.trim();
-        let is_skipped =
-            text.is_empty() || text.starts_with('#') || self.line <= self.layout.skipped;
-        if is_skipped {
+        let text = text.trim_start_matches('\u{feff}').trim();
+        if text.is_empty() || text.starts_with('#') || self.line <= self.skipped {
             return Ok(None);
         }
-        let read = match &self.header {
-            None if text.starts_with('{') => self.object(text).map(Some),
-            None => {
-                self.header = Some((self.line, text.trim_start_matches('\u{feff}').into()));
-                self.row(None).map(|_| None)
+        let read = match self.header.clone() {
+            None if text.starts_with('{') => {
+                object(text).and_then(|[header, row]| self.row(&header, &row).map(Some))
             }
-            Some(_) => self.row(Some(text)).map(Some),
+            None => {
+                self.header = Some(text.into());
+                self.row(text, "").map(|_| None)
+            }
+            Some(header) => self.row(&header, text).map(Some),
         };
-        read.map_err(|refusal| refusal.in_file(&*self.file))
+        read.map_err(|refusal| self.refused(refusal))
     }
 
-    /// A row below the header, or the header alone.
-    fn row(&mut self, row: Option<&str>) -> Result<(f64, Force<f64>), Refusal> {
-        let header = self.header.clone().unwrap_or_default();
-        self.read((header.0, &header.1), row)
+    /// A row below a header.
+    fn row(&mut self, header: &str, row: &str) -> Result<LiveSample, Refusal> {
+        let text = format!("{header}\n{row}");
+        let read = Rows::parse_last_optional::<2>(&text, LIVE, EXPECTED, &self.layout, true)?;
+        let (table, has_lateral) = read;
+        let had_lateral = *self.has_lateral.get_or_insert(has_lateral);
+        // A sample without the lateral force that the first one had is missing.
+        let whole = table.rows.first().filter(|_| has_lateral || !had_lateral);
+        let [position, normal, lateral] = whole.map_or([f64::NAN; 3], |(_, numbers)| *numbers);
+        Ok((position, had_lateral.then_some(lateral), normal))
     }
+}
 
-    fn read(
-        &mut self,
-        header: (usize, &str),
-        row: Option<&str>,
-    ) -> Result<(f64, Force<f64>), Refusal> {
-        let row = row.map(|row| (self.line, row));
-        let read = row_below::<2, 3>(header, row, LIVE, EXPECTED, &self.layout)?;
-        let ([position, normal, lateral], has_lateral) = read;
-        // Where the first sample has a lateral force, one without it is missing.
-        let is_missing = *self.has_lateral.get_or_insert(has_lateral) && !has_lateral;
-        let lateral = if is_missing { f64::NAN } else { lateral };
-        Ok((position, Force::new(lateral, normal)))
-    }
-
-    /// An object, as a header of its keys and a row of its values.
-    fn object(&mut self, text: &str) -> Result<(f64, Force<f64>), Refusal> {
-        let object: Map<String, Value> = serde_json::from_str(text).map_err(|error| {
-            let expected = "give an object such as {\"position_mm\": -1, \"lateral_force_n\": 0.02, \"normal_force_n\": 1.5}";
-            Refusal::state(crate::file::message(&error), expected).at(self.line)
-        })?;
-        let quoted = |key: &String| format!("\"{key}\"");
-        let value = |value: &Value| match value {
-            Value::Null => String::new(),
-            value => value.to_string(),
-        };
-        let header: Vec<String> = object.keys().map(quoted).collect();
-        let row: Vec<String> = object.values().map(value).collect();
-        self.read((self.line, &header.join(";")), Some(&row.join(";")))
-    }
+/// An object as a header of its keys and a row of its values.
+fn object(text: &str) -> Result<[String; 2], Refusal> {
+    let object: Map<String, Value> = serde_json::from_str(text).map_err(|error| {
+        let right = r#"give an object such as {"position_mm": -1, "normal_force_n": 1.5}"#;
+        Refusal::state(crate::file::message(&error), right)
+    })?;
+    let keys = object.keys().map(|key| format!("\"{key}\""));
+    let values = object.values().map(|value| match value {
+        Value::Null => String::new(),
+        value => value.to_string(),
+    });
+    Ok([keys.collect::<Vec<_>>(), values.collect()].map(|fields| fields.join(";")))
 }
 
 #[cfg(test)]
@@ -133,7 +121,7 @@ mod tests {
             .iter()
             .filter_map(|line| samples.sample(line).transpose());
         let numbers =
-            |(position, force): (f64, Force<f64>)| [position, force.lateral, force.normal];
+            |(position, lateral, normal): LiveSample| [position, lateral.unwrap_or(0.0), normal];
         let read: Result<Vec<_>, Refusal> = read.map(|read| read.map(numbers)).collect();
         read.map_err(|refusal| refusal.to_string())
     }
@@ -223,10 +211,7 @@ mod tests {
                 &["position_mm,normal_force_n", "1,inf"],
                 "-:2: normal_force_n = \"inf\", but must be",
             ),
-            (
-                &[r#"{"position_mm": 1}"#],
-                "-:1: no column normal_force_n",
-            ),
+            (&[r#"{"position_mm": 1}"#], "-:1: no column normal_force_n"),
             (
                 &[r#"{"position_mm": 1, "normal_force_n": [1]}"#],
                 "-:1: normal_force_n = \"[1]\", but must be",

@@ -9,11 +9,10 @@ use crate::trace::{Cause, Criterion, Record, Unknown};
 
 const TEST: [f64; 2] = [0.02, 0.05];
 
-fn question(unknown: &[Unknown]) -> WatchQuestion<'_> {
+fn question(unknown: &[Unknown]) -> WatchQuestion {
     WatchQuestion {
-        unknown,
+        unknown: unknown.to_vec(),
         noise_sd: Force::new(SD, SD),
-        has_lateral: true,
         is_zeroed: false,
         prior_h1: 0.25,
         prior: None,
@@ -21,35 +20,22 @@ fn question(unknown: &[Unknown]) -> WatchQuestion<'_> {
     }
 }
 
+/// Position, lateral force, if there is one, and normal force.
+type Sample = (f64, Option<f64>, f64);
+
 /// The samples of a record, in order.
-fn samples(record: &Record) -> Vec<(f64, Force<f64>)> {
+fn samples(record: &Record) -> Vec<Sample> {
     let forces = record.forces();
-    let lateral = |at| forces.lateral.get(at).copied().unwrap_or(f64::INFINITY);
-    let force = |at: usize| Force::new(lateral(at), forces.normal[at]);
-    record
-        .positions()
-        .iter()
-        .enumerate()
-        .map(|(at, x)| (*x, force(at)))
+    let places = record.positions().iter().enumerate();
+    places
+        .map(|(at, x)| (*x, forces.lateral.get(at).copied(), forces.normal[at]))
         .collect()
 }
 
-fn watched(
-    question: &WatchQuestion<'_>,
-    samples: impl IntoIterator<Item = (f64, Force<f64>)>,
-) -> Watcher {
+fn watched(question: &WatchQuestion, samples: impl IntoIterator<Item = Sample>) -> Watcher {
     let mut watcher = Watcher::new(&all(), question).unwrap();
-    for (position, forces) in samples {
-        watcher
-            .push(
-                position,
-                if question.has_lateral {
-                    forces
-                } else {
-                    Force::new(0.0, forces.normal)
-                },
-            )
-            .unwrap();
+    for (x, lateral, normal) in samples {
+        watcher.push(x, lateral, normal).unwrap();
     }
     watcher
 }
@@ -77,10 +63,8 @@ fn the_last_answer_is_that_of_the_whole_record() {
                     let mut batch = search(&bank, unknown, Criterion::MaximumAPosteriori);
                     batch.prior = prior;
                     let expected = batch.locate(&record).unwrap();
-                    let has_lateral = !record.forces().lateral.is_empty();
                     let question = WatchQuestion {
-                        has_lateral,
-                        prior,
+                        prior: prior.map(<[f64]>::to_vec),
                         ..question(unknown)
                     };
                     let samples = samples(&record);
@@ -153,8 +137,8 @@ fn a_path_that_ends_early_leaves_open_what_it_has_not_covered() {
         left[20 * diameter] = 0.5;
     }
     let left = WatchQuestion {
-        prior: Some(&left),
-        ..question
+        prior: Some(left),
+        ..question.clone()
     };
     let half = watched(&left, record[..40].iter().copied())
         .answer()
@@ -176,8 +160,8 @@ fn an_inclusion_is_told_before_the_sweep_is_over_and_stays_told() {
     let record = samples(&record(&bank.maps()[place], Some(4), 0.2, 1.1));
     let mut watcher = watched(&question(USUAL), None);
     let mut told = None;
-    for (at, (position, forces)) in (1..).zip(record) {
-        watcher.push(position, forces).unwrap();
+    for (at, (x, lateral, normal)) in (1..).zip(record) {
+        watcher.push(x, lateral, normal).unwrap();
         let found = watcher.answer().unwrap();
         if told.is_none() && found.decision.is_some() {
             told = Some(at);
@@ -202,17 +186,17 @@ fn samples_that_are_missing_or_outside_are_counted_and_change_nothing() {
     let question = question(USUAL);
     let mut holed = Vec::new();
     let nan = f64::NAN;
-    for (at, &(x, forces)) in record.iter().enumerate() {
+    for (at, &(x, lateral, normal)) in record.iter().enumerate() {
         holed.extend(
             [
-                (x, Force::new(nan, forces.normal)),
-                (nan, forces),
-                (x, Force::new(0.0, nan)),
+                (x, Some(nan), normal),
+                (nan, lateral, normal),
+                (x, lateral, nan),
             ]
             .get(at),
         );
-        holed.extend([(3.1e-3, forces), (-3.1e-3, forces)].get(at));
-        holed.push((x, forces));
+        holed.extend([(3.1e-3, lateral, normal), (-3.1e-3, lateral, normal)].get(at));
+        holed.push((x, lateral, normal));
     }
     let (found, expected) = (
         watched(&question, holed).answer().unwrap(),
@@ -227,14 +211,6 @@ fn samples_that_are_missing_or_outside_are_counted_and_change_nothing() {
         },
         expected
     );
-    // The force that the sensor does not have may be anything.
-    let question = WatchQuestion {
-        has_lateral: false,
-        ..question
-    };
-    let mut watcher = watched(&question, None);
-    watcher.push(0.0, Force::new(f64::NAN, 1.0)).unwrap();
-    assert_eq!(watcher.answer().unwrap().samples, 1);
 }
 
 // Verifies: SEQ-023.
@@ -243,7 +219,7 @@ fn a_record_that_no_hypothesis_explains_is_not_answered() {
     let gel = samples(&record(&reference(), Some(6), 0.0, 1.0));
     let air: Vec<_> = gel
         .iter()
-        .map(|&(x, f)| (x, Force::new(f.lateral, f.normal - 1.0)))
+        .map(|&(x, lateral, normal)| (x, lateral, normal - 1.0))
         .collect();
     let question = question(&[Unknown::Offset]);
     let all = watched(&question, air.iter().copied()).answer().unwrap();
@@ -254,7 +230,7 @@ fn a_record_that_no_hypothesis_explains_is_not_answered() {
     assert_eq!((all.covered, all.open_positions_m.len()), (40, 5));
     let zeroed = WatchQuestion {
         is_zeroed: true,
-        ..question
+        ..question.clone()
     };
     let on_gel = watched(&zeroed, air.iter().copied()).answer().unwrap();
     assert_eq!(on_gel.decision, Some(Decision::NoInclusion));
@@ -270,7 +246,7 @@ fn a_record_that_no_hypothesis_explains_is_not_answered() {
     let quiet = watched(
         &WatchQuestion {
             noise_sd,
-            ..question
+            ..question.clone()
         },
         gel.iter().copied(),
     );
@@ -281,8 +257,8 @@ fn a_record_that_no_hypothesis_explains_is_not_answered() {
         watcher.answer().unwrap().decision,
         Some(Decision::NoInclusion)
     );
-    for (x, forces) in air.iter().rev().take(40).copied() {
-        watcher.push(x, forces).unwrap();
+    for (x, lateral, normal) in air.iter().rev().take(40).copied() {
+        watcher.push(x, lateral, normal).unwrap();
     }
     let found = watcher.answer().unwrap();
     assert_eq!(
@@ -299,55 +275,54 @@ fn a_record_that_no_hypothesis_explains_is_not_answered() {
 #[test]
 fn what_cannot_be_watched_is_refused() {
     let (bank, usual) = (all(), question(USUAL));
-    let refused =
-        |question: WatchQuestion<'_>| Watcher::new(&bank, &question).unwrap_err().to_string();
+    let refused = |question: WatchQuestion| Watcher::new(&bank, &question).unwrap_err().to_string();
     let unknown = [Unknown::Offset, Unknown::Variance];
     assert!(
         refused(WatchQuestion {
-            unknown: &unknown,
-            ..usual
+            unknown: unknown.to_vec(),
+            ..usual.clone()
         })
         .contains("cannot be estimated")
     );
     assert!(
         refused(WatchQuestion {
             noise_sd: Force::new(SD, 0.0),
-            ..usual
+            ..usual.clone()
         })
         .contains("noise_sd_normal_n")
     );
     assert!(
         refused(WatchQuestion {
             noise_sd: Force::new(1e-60, SD),
-            ..usual
+            ..usual.clone()
         })
         .contains("1e50")
     );
     assert!(
         refused(WatchQuestion {
             prior_h1: 1.0,
-            ..usual
+            ..usual.clone()
         })
         .contains("prior_h1")
     );
     assert!(
         refused(WatchQuestion {
-            prior: Some(&[1.0]),
-            ..usual
+            prior: Some(vec![1.0]),
+            ..usual.clone()
         })
         .contains("prior")
     );
     assert!(
         refused(WatchQuestion {
-            prior: Some(&[0.1; 40]),
-            ..usual
+            prior: Some(vec![0.1; 40]),
+            ..usual.clone()
         })
         .contains("prior")
     );
     let single = Bank::new(map(None, &[4e-3]), maps()).unwrap();
     let question = WatchQuestion {
-        unknown: &[Unknown::Depth],
-        ..usual
+        unknown: vec![Unknown::Depth],
+        ..usual.clone()
     };
     assert!(
         Watcher::new(&single, &question)
@@ -362,7 +337,7 @@ fn what_cannot_be_watched_is_refused() {
         (0.0, 0.0, 1e60),
         (f64::NAN, 0.0, f64::INFINITY),
     ] {
-        assert!(watcher.push(x, Force::new(lateral, normal)).is_err());
+        assert!(watcher.push(x, Some(lateral), normal).is_err());
     }
     let found = watcher.answer().unwrap();
     assert_eq!(
@@ -379,12 +354,12 @@ fn what_cannot_be_watched_is_refused() {
     let mut watcher = Watcher::new(
         &bank,
         &WatchQuestion {
-            unknown: &twice,
-            ..usual
+            unknown: twice.to_vec(),
+            ..usual.clone()
         },
     )
     .unwrap();
-    watcher.push(0.0, Force::new(0.0, 1.0)).unwrap();
+    watcher.push(0.0, Some(0.0), 1.0).unwrap();
 }
 
 /// Of so many sweeps back and forth over a gel with the inclusion of a map, or none, in noise of 0.4 N: how many are answered
@@ -408,8 +383,8 @@ fn answers(trials: u64, map: Option<usize>) -> [u64; 3] {
         let (mut watcher, mut is_excluded) = (fresh.clone(), false);
         for (at, x) in path.iter().enumerate() {
             let normal = 1.1 * exact.normal[at] + 0.2 + sd * noise[2 * at];
-            let forces = Force::new(sd * noise[2 * at + 1], normal);
-            watcher.push(*x, forces).unwrap();
+            let lateral = Some(sd * noise[2 * at + 1]);
+            watcher.push(*x, lateral, normal).unwrap();
             let there = map.and_then(|map| watcher.found.evidence().nth(map));
             is_excluded |= there.is_some_and(|of| watcher.is_excluded(of));
         }
