@@ -29,7 +29,7 @@ fn help(arguments: &[&str]) -> String {
 }
 
 /// Units in which the names of options and keys may end.
-const UNITS: [&str; 6] = ["mm", "mm-s", "kpa", "us", "n", "s"];
+const UNITS: [&str; 7] = ["mm", "mm-s", "kpa", "us", "ms", "n", "s"];
 
 /// Options whose value is no quantity, has no unit, or is in SI.
 const NO_OTHER_UNIT: &str = "\

@@ -203,6 +203,22 @@ class Bank:
         zeroed: bool = False,
     ) -> dict[str, Any]: ...
 
+class Watcher:
+    def __new__(
+        cls,
+        bank: Bank,
+        noise_sd_n: ArrayLike,
+        unknown: Sequence[str] = ("offset", "drift", "gain"),
+        max_false_alarm: float = 0.01,
+        max_miss: float = 0.05,
+        prior: ArrayLike | None = None,
+        prior_h1: float = 0.5,
+        zeroed: bool = False,
+    ) -> Watcher: ...
+    def push(
+        self, position_mm: float, normal_force_n: float, lateral_force_n: float | None = None
+    ) -> dict[str, Any]: ...
+
 def calibrate(
     depths_mm: ArrayLike,
     forces_n: ArrayLike,

@@ -42,7 +42,7 @@ fn named<T: Serialize>(of: impl Fn(usize, i32) -> T) -> Value {
 /// and Young's moduli. Bank(reference, maps) is the bank of force maps.
 #[pyclass(frozen, module = "palpate")]
 pub struct Bank {
-    bank: bank::Bank,
+    pub(crate) bank: bank::Bank,
     /// The gels beside that of the bank, once they were asked for.
     changes: OnceLock<Option<GelChanges>>,
 }
@@ -97,7 +97,7 @@ fn record(positions_mm: Any, forces_n: Any) -> PyResult<Record> {
 }
 
 /// Those of `all` that the `names` under a key of Python name.
-fn chosen<T: Copy + ToString>(
+pub fn chosen<T: Copy + ToString>(
     key: &str,
     names: Vec<String>,
     all: impl IntoIterator<Item = T>,

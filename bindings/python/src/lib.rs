@@ -7,6 +7,7 @@
 //! | `detector.rs`, `decision.rs` | the detector: records, and what follows from θ |
 //! | `batch.rs` | θ of many records |
 //! | `bank.rs` | banks of inclusions |
+//! | `watch.rs` | a sweep against a bank while it is taken |
 //! | `calibration.rs` | force–depth curves |
 //! | `psychophysics.rs` | counts of right answers |
 //! | `servo.rs` | the servo kernel |
@@ -26,6 +27,7 @@ mod oracle;
 mod phantom;
 mod psychophysics;
 mod servo;
+mod watch;
 
 use pyo3::prelude::*;
 
@@ -63,6 +65,8 @@ mod palpate {
     use super::psychophysics::{analyse_answers, count_analysis};
     #[pymodule_export]
     use super::servo::{Limits, Sample, ServoState, ServoTable, step};
+    #[pymodule_export]
+    use super::watch::Watcher;
 
     #[pymodule_init]
     fn init(module: &Bound<PyModule>) -> PyResult<()> {

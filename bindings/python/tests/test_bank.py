@@ -1,4 +1,4 @@
-"""Banks and counts of answers. Checks PYT-002, PYT-005, PYT-010."""
+"""Banks and counts of answers. Checks PYT-002, PYT-005, PYT-010, PYT-032."""
 
 import json
 import math
@@ -133,3 +133,29 @@ def test_table_1(tmp_path):
         with pytest.raises(palpate.Refused):
             palpate.count_analysis(wrong, 30)
     json.dumps(analysis)
+
+
+def test_a_sweep_is_watched_sample_by_sample(bank):
+    x = np.linspace(-8, 8, 161)
+    truth = palpate.Phantom("6.6", inclusion_centre_x_mm=2, inclusion_depth_mm=5.6)
+    record = noisy(truth.map([4], np.arange(-8, 9.0), mesh_mm=1).sweep(4, x))
+    watcher = palpate.Watcher(bank, noise_sd_n=0.05, unknown=["offset", "gain"])
+    answers = [watcher.push(*sample) for sample in zip(x, record[1], record[0])]
+    last = answers[-1]
+    whole = bank.locate(x, record, noise_sd_n=0.05, unknown=["offset", "gain"], white=True)
+    assert math.isclose(last["theta"], whole["theta_mixture"], abs_tol=1e-9)
+    assert math.isclose(last["posterior_h1"], whole["posterior_h1"], abs_tol=1e-9)
+    assert last["decision"] == "inclusion" and last["likeliest"]["position_m"] == 0.002
+    first = next(answer for answer in answers if answer["decision"])
+    assert last["decided_at_sample"] == first["samples"] < 161 and first["uncovered_positions_m"]
+    assert watcher.push(math.nan, 1.5, 0)["missing"] == 1 and watcher.push(0, math.nan, 0)["missing"] == 2
+    assert watcher.push(9, 1.5, 0)["outside"] == 1
+    alone = palpate.Watcher(bank, noise_sd_n=(0.05, 0.05), max_miss=0.1)
+    assert alone.push(0, 1.5)["posterior_h1"] == 0.5
+    for wrong in ({"unknown": ["variance"]}, {"unknown": ["x"]}, {"max_miss": 0}, {"prior": [1]}, {"prior_h1": 1}):
+        with pytest.raises(palpate.Refused):
+            palpate.Watcher(bank, noise_sd_n=0.05, **wrong)
+    with pytest.raises(palpate.Refused):
+        watcher.push(0, math.inf)
+    with pytest.raises(palpate.Refused):
+        watcher.push(math.inf, 1)
