@@ -22,10 +22,14 @@ fn simulated(truth: Decision, test: Test<'_>) -> ([u64; 2], f64) {
     for trial in 0..TRIALS {
         let mut found = Sequential::new([0.0; memory(1, 1)], 1, 1).unwrap();
         let answer = (0..).find_map(|sample: usize| {
-            if sample % noise.len() == 0 {
+            if sample.is_multiple_of(noise.len()) {
                 generator.normals(trial, sample as u64, &mut noise);
             }
-            let signal = if sample % 2 == 0 { size } else { -size };
+            let signal = if sample.is_multiple_of(2) {
+                size
+            } else {
+                -size
+            };
             let there = if truth == Decision::Inclusion {
                 signal
             } else {
