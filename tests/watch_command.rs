@@ -61,7 +61,7 @@ fn detected(name: &str) -> Value {
     serde_json::from_str(&place().succeed(&line)).unwrap()
 }
 
-// Verifies: SEQ-025, CLI-180, CLI-181.
+// Verifies: SEQ-025, CLI-183, CLI-184.
 #[test]
 fn the_last_answer_is_that_of_detect() {
     for (name, decision) in [
@@ -125,7 +125,7 @@ fn the_last_answer_is_that_of_detect() {
     }
 }
 
-// Verifies: CLI-179, SEQ-024.
+// Verifies: CLI-182, SEQ-024.
 #[test]
 fn csv_and_json_say_the_same_and_gaps_are_counted() {
     let csv = sweep("sweep-with");
@@ -198,7 +198,7 @@ fn next(output: &mut impl BufRead) -> Value {
     serde_json::from_str(&line).unwrap_or_else(|error| panic!("{line:?}: {error}"))
 }
 
-// Verifies: CLI-180, CLI-181.
+// Verifies: CLI-183, CLI-184.
 #[test]
 fn an_answer_follows_each_sample_at_once_and_a_signal_ends_it_with_the_last() {
     let (mut child, mut input, mut output) = running(WATCH);
@@ -226,7 +226,7 @@ fn an_answer_follows_each_sample_at_once_and_a_signal_ends_it_with_the_last() {
     drop(input);
 }
 
-// Verifies: CLI-003, CLI-180.
+// Verifies: CLI-003, CLI-183.
 #[test]
 fn a_reader_that_goes_away_ends_it_quietly() {
     let (child, mut input, mut output) = running(WATCH);
@@ -238,7 +238,7 @@ fn a_reader_that_goes_away_ends_it_quietly() {
     assert_eq!((ended.status.code(), text(&ended.stderr)), (Some(0), ""));
 }
 
-// Verifies: CLI-180.
+// Verifies: CLI-183.
 #[test]
 fn an_answer_that_is_not_due_is_left_out_but_for_decisions_and_the_last() {
     let (answers, ..) = watched(
@@ -253,7 +253,7 @@ fn an_answer_that_is_not_due_is_left_out_but_for_decisions_and_the_last() {
     assert_eq!(samples, [1, decided, 401]);
 }
 
-// Verifies: CLI-179, CLI-181.
+// Verifies: CLI-182, CLI-184.
 #[test]
 fn what_cannot_be_watched_is_refused_after_what_could() {
     let header = "position_mm,normal_force_n\n";

@@ -82,7 +82,7 @@ struct Line<'a> {
 
 /// Runs the command.
 ///
-/// Implements: CLI-180, CLI-181.
+/// Implements: CLI-183, CLI-184.
 pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
     let bank = Bank::read(&arguments.bank)?;
     let prior = arguments.prior.as_ref();
@@ -134,7 +134,7 @@ pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
     }
 }
 
-/// Implements: CLI-181.
+/// Implements: CLI-184.
 fn why_undecided(answer: &WatchAnswer) -> String {
     let WatchAnswer {
         causes,
@@ -183,7 +183,7 @@ fn next(lines: &Receiver<String>, stop: &AtomicBool) -> Option<String> {
 
 /// Writes an answer, the last one with what `test` needs; whether somebody still reads.
 ///
-/// Implements: CLI-180, CLI-181.
+/// Implements: CLI-183, CLI-184.
 fn write(answer: &WatchAnswer, test: Option<&Wald>) -> Result<bool, CliError> {
     let needed = test.map(|test| {
         let gamma = required_gamma(test.rates().false_alarm, test.rates().miss);

@@ -64,7 +64,7 @@ impl LiveSamples {
     /// # Errors
     /// A header or object that does not name the columns, a field that is no finite decimal number, text that is no JSON; with the line.
     ///
-    /// Implements: CLI-179.
+    /// Implements: CLI-182.
     pub fn sample(&mut self, text: &str) -> Result<Option<LiveSample>, Refusal> {
         self.line += 1;
         let text = text.trim_start_matches('\u{feff}').trim();
@@ -126,7 +126,7 @@ mod tests {
         read.map_err(|refusal| refusal.to_string())
     }
 
-    // Verifies: CLI-179.
+    // Verifies: CLI-182.
     #[test]
     fn lines_of_csv_and_of_json_are_the_same_samples() {
         let expected = [[-1e-3, 0.02, 1.5], [5e-4, -0.03, 1.6]];
@@ -166,7 +166,7 @@ mod tests {
         );
     }
 
-    // Verifies: CLI-179.
+    // Verifies: CLI-182.
     #[test]
     fn a_missing_number_makes_the_sample_missing() {
         let texts = [
@@ -191,7 +191,7 @@ mod tests {
         }
     }
 
-    // Verifies: CLI-179.
+    // Verifies: CLI-182.
     #[test]
     fn lines_that_are_no_samples_are_refused_with_their_number() {
         for (lines, expected) in [
