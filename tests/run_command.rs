@@ -99,7 +99,7 @@ fn a_path_prints_a_row_for_each_pose_and_writes_a_series() {
         csv.starts_with("lateral_mm,depth_mm,normal_force_n,lateral_force_n\n"),
         "{csv}"
     );
-    assert!(last.starts_with("2,2,"), "{last}");
+    assert!(last.starts_with("2.0,2.0,"), "{last}");
     for (more, told) in [
         ("--format json", "--path prints no map"),
         ("--certify", "cannot be used with"),
