@@ -88,8 +88,14 @@ fn folder(name: &str) -> PathBuf {
 fn bin() -> &'static Path {
     static BIN: OnceLock<PathBuf> = OnceLock::new();
     BIN.get_or_init(|| {
-        let bin = folder("bin");
-        symlink(PROGRAM, bin.join("palpate")).unwrap();
+        let bin = Path::new(env!("CARGO_TARGET_TMPDIR")).join("docs-bin");
+        fs::create_dir_all(&bin).unwrap();
+        // Each test has a process of its own, and another may have made it; it is never removed.
+        let _ = symlink(PROGRAM, bin.join("palpate"));
+        assert_eq!(
+            fs::read_link(bin.join("palpate")).unwrap(),
+            Path::new(PROGRAM)
+        );
         bin
     })
 }
