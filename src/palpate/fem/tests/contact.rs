@@ -275,7 +275,7 @@ fn a_pose_that_does_not_converge_is_an_error_that_names_it() {
         let error = surface.solve(pose, &untouched).unwrap_err();
         assert!(matches!(error, FemError::NoConvergence { .. }), "{error}");
         let message = error.to_string();
-        for part in ["depth 2.5 mm", "lateral 1.5 mm"] {
+        for part in ["depth 2.500 mm", "lateral 1.500 mm"] {
             assert!(message.contains(part), "{message}");
         }
         surface.compliance = sound;
