@@ -203,6 +203,7 @@ class Bank:
         zeroed: bool = False,
     ) -> dict[str, Any]: ...
 
+@final
 class Watcher:
     def __new__(
         cls,

@@ -49,8 +49,6 @@ impl Watcher {
 
     /// Adds a sample and returns what all samples so far say, a dictionary with the keys of palpate watch, in SI (posterior_h1, decision,
     /// likeliest, open_positions_m ...). position_mm in mm, the forces in N, without a lateral one if the sensor has none; a NaN is missing.
-    ///
-    /// Implements: PYT-032.
     #[pyo3(signature = (position_mm, normal_force_n, lateral_force_n=None))]
     fn push<'py>(
         &mut self,

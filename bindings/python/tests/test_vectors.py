@@ -68,8 +68,8 @@ def noise_budget(signal_n, max_false_alarm, max_miss, sources_n):
     return dict(zip(("gamma", "total_allowed_n", "remaining_n"), found))
 
 
-def probe_force(phantom, depth_m, lateral_m):
-    found = palpate.Phantom(phantom).solve(depth_mm=1000 * depth_m, lateral_mm=1000 * lateral_m)
+def probe_force(phantom, depth_m, lateral_m, strain="small"):
+    found = palpate.Phantom(phantom, strain=strain).solve(depth_mm=1000 * depth_m, lateral_mm=1000 * lateral_m)
     return {"normal_force_n": found.normal_n, "lateral_force_n": found.lateral_n}
 
 
