@@ -41,7 +41,7 @@ pub fn parent_gradients([r, s]: [f64; 2]) -> PerNode {
 }
 
 /// The shape functions at a point in parent coordinates.
-fn shapes([r, s]: [f64; 2]) -> [f64; NODES] {
+pub(super) fn shapes([r, s]: [f64; 2]) -> [f64; NODES] {
     let q = 1.0 - r - s;
     let corner = |q: f64| q * (2.0 * q - 1.0);
     [

@@ -10,7 +10,7 @@ use nalgebra::{Matrix2, Vector2};
 use super::super::system::System;
 use super::{lattice, long, rich};
 use crate::fem::Mesh;
-use crate::fem::element::{CORNERS, NODES, PerNode, gradients, parent_gradients};
+use crate::fem::element::{CORNERS, NODES, PerNode, gradients, parent_gradients, shapes};
 use crate::phantom::{Material, Strain};
 
 /// Points and weights of Gauss and Legendre on (0, 1), exact to degree 9.
@@ -77,19 +77,6 @@ fn body_force(material: &Material, at: Vector2<f64>) -> Vector2<f64> {
     let [x, y] = [Vector2::x(), Vector2::y()]
         .map(|axis| slope(|step| piola(material, at + axis * step)) * axis);
     -(x + y)
-}
-
-fn shapes([r, s]: [f64; 2]) -> [f64; NODES] {
-    let q = 1.0 - r - s;
-    let corner = |q: f64| q * (2.0 * q - 1.0);
-    [
-        corner(q),
-        corner(r),
-        corner(s),
-        4.0 * q * r,
-        4.0 * r * s,
-        4.0 * s * q,
-    ]
 }
 
 /// A point of an element under a rule much finer than the law's own: the square of Gauss folded onto the triangle.
