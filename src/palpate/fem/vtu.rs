@@ -1,7 +1,5 @@
 //! One pose as a VTK unstructured grid in ASCII (`.vtu`), for ParaView.
 
-use std::iter::once;
-
 use nalgebra::Vector2;
 
 use super::element::{NODES, SAMPLES, stress};
@@ -21,15 +19,19 @@ impl Model {
     /// # Errors
     /// As [`Model::vtu`].
     pub fn vtu_series(&self, path: &[PoseSolution]) -> Result<Vec<String>, FemError> {
-        let before = once(None).chain(path.iter().map(Some));
-        let each = path.iter().zip(before);
-        each.map(|(now, before)| self.written(now, before))
-            .collect()
+        let mut before = None;
+        let next = |solution: &PoseSolution| {
+            let field = self.field(solution)?;
+            let text = self.written(solution, &field, before.as_ref());
+            before = Some((field, solution.pose));
+            text
+        };
+        path.iter().map(next).collect()
     }
 
     /// The deformed mesh of a solved pose: points at their deformed positions, m; at each point the displacement, m, pressure and
-    /// shear stress of the probe, Pa, and the slip along it, m, which is 0; in each element its region (layers from the top, then inclusions), the mean over its
-    /// sampling points of stress and pressure, Pa, the von Mises stress of that mean, Pa, and the
+    /// shear stress of the probe, Pa, and the slip along it, m, which is 0; in each element its region (layers from the top, then
+    /// inclusions), the mean over its sampling points of stress and pressure, Pa, the von Mises stress of that mean, Pa, and the
     /// smallest det(I + ∇u).
     ///
     /// Implements: FEM-016.
@@ -37,20 +39,19 @@ impl Model {
     /// # Errors
     /// [`FemError::Residual`].
     pub fn vtu(&self, solution: &PoseSolution) -> Result<String, FemError> {
-        self.written(solution, None)
+        self.written(solution, &self.field(solution)?, None)
     }
 
     fn written(
         &self,
         solution: &PoseSolution,
-        before: Option<&PoseSolution>,
+        field: &Field,
+        before: Option<&(Field, Pose)>,
     ) -> Result<String, FemError> {
         let found = "the stresses of an axisymmetric phantom cannot be written yet";
         let is_revolved = self.phantom().geometry() == Geometry::Axisymmetric;
         Refusal::state(found, "leave out the file for ParaView").when(is_revolved)?;
-        let field = self.field(solution)?;
-        let before = before.map(|before| Ok::<_, FemError>((self.field(before)?, before.pose)));
-        let touches = self.touches(solution, &field, before.transpose()?);
+        let touches = self.touches(solution, field, before);
         let mesh = self.mesh();
         let (nodes, elements) = (mesh.nodes.len(), mesh.regions.len());
         let displacements = &field.displacements;
@@ -126,7 +127,7 @@ impl Model {
         &self,
         solution: &PoseSolution,
         field: &Field,
-        before: Option<(Field, Pose)>,
+        before: Option<&(Field, Pose)>,
     ) -> Vec<OnNode> {
         let (mesh, probe) = (self.mesh(), self.phantom().probe());
         let at = |field: &Field, node: usize| {
@@ -153,9 +154,7 @@ impl Model {
             touches[node] = OnNode {
                 pressure: stress.dot(&now.normal),
                 shear: stress.dot(&now.tangent()),
-                slip: before
-                    .as_ref()
-                    .map_or(0.0, |(field, pose)| now.arc - place(field, *pose, node).arc),
+                slip: before.map_or(0.0, |(field, pose)| now.arc - place(field, *pose, node).arc),
             };
         }
         touches
