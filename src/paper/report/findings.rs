@@ -75,7 +75,9 @@ pub fn findings(run: &Run) -> Result<Findings, Refusal> {
     let table = AnswerTable::paper()?;
     let people = analyse(&table).map_err(Refusal::because("Table 1"))?;
     let noise = paper_noise_levels().map_err(Refusal::because("Table 1"))?;
-    let bridge = bridge_to(&table, run, compared).map_err(Refusal::because("Table 1"))?;
+    let bridged: &[ForceMap] = if is_comparable { &run.maps } else { &[] };
+    let bridge = bridge_to(&table, &run.reference, bridged, paper::name_of);
+    let bridge = bridge.map_err(Refusal::because("Table 1"))?;
     let level = reference.normal_force_at_centre_n.filter(|_| is_comparable);
     let comparison = comparison::table(level, compared, &people, &noise, bridge.as_ref());
     Ok(Findings {

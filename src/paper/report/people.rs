@@ -1,14 +1,16 @@
 //! The paper's subjects: what their answers say by themselves, and against the forces.
 
-use super::maps::MapFindings;
+use super::paper;
 use super::text::extremes;
-use super::{Run, paper};
 use crate::psychophysics::bridge::{Bridge, bridge};
 use crate::psychophysics::{Analysis, AnswerTable, Bounds};
+use palpate::force_map::ForceMap;
+use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 use palpate::stats::normal;
 
-/// The bridge from those maps of `run` whose findings are in `compared` to the answers of `table`; `None` with fewer than two.
+/// The bridge from those of `maps` whose phantom `name_of` calls one of the paper's to the answers of `table`; `None` with fewer than
+/// two.
 ///
 /// # Errors
 /// If a map is not over the poses of the reference.
@@ -16,19 +18,19 @@ use palpate::stats::normal;
 /// Implements: REP-070.
 pub(super) fn bridge_to(
     table: &AnswerTable,
-    run: &Run,
-    compared: &[MapFindings],
+    reference: &ForceMap,
+    maps: &[ForceMap],
+    name_of: fn(&Phantom) -> Option<&'static str>,
 ) -> Result<Option<Bridge>, Refusal> {
-    let columns = paper::INCLUSIONS.into_iter().filter_map(|name| {
-        let of_map = |map: &MapFindings| map.paper_phantom == Some(name);
-        let index = compared.iter().position(of_map)?;
-        Some((name, run.maps.get(index)?))
-    });
-    let columns: Vec<_> = columns.collect();
+    let column = |name| {
+        let is_named = |map: &&ForceMap| map.phantom().and_then(name_of) == Some(name);
+        Some((name, maps.iter().find(is_named)?))
+    };
+    let columns: Vec<_> = paper::INCLUSIONS.into_iter().filter_map(column).collect();
     // Fewer than two depths say nothing of how rates fall with depth.
     let has_depths = columns.len() >= 2;
     has_depths
-        .then(|| bridge(table, &run.reference, &columns, None))
+        .then(|| bridge(table, reference, &columns, None))
         .transpose()
 }
 

@@ -4,10 +4,11 @@ use serde::Serialize;
 
 use super::maps::{MapFindings, ReferenceFindings, of_map, of_reference, signal};
 use super::nuisances::{BOTH, BY_DEFAULT, columns, space};
+use super::people::bridge_to;
 use super::text::name_of_map;
 use super::{Settings, Theory, paper};
 use crate::psychophysics::AnswerTable;
-use crate::psychophysics::bridge::{ConventionFit, bridge, probe_depth};
+use crate::psychophysics::bridge::{ConventionFit, probe_depth};
 use palpate::detect::nuisance::dot;
 use palpate::force_map::ForceMap;
 use palpate::phantom::{Phantom, Strain};
@@ -108,9 +109,9 @@ pub(super) fn findings(
     theories.iter().map(of).collect()
 }
 
-/// The paper's name of a map's phantom, whatever its theory.
-fn name_of(map: &ForceMap) -> Option<&'static str> {
-    let plain = map.phantom()?.changed(|parts| {
+/// The paper's name of a phantom, whatever its theory.
+fn name_of(phantom: &Phantom) -> Option<&'static str> {
+    let plain = phantom.changed(|parts| {
         parts.strain = Strain::Small;
         parts.probe.friction = 0.0;
     });
@@ -118,18 +119,14 @@ fn name_of(map: &ForceMap) -> Option<&'static str> {
 }
 
 fn explanations(theory: &Theory) -> Result<Vec<Explanation>, Refusal> {
-    let named = |name| {
-        Some((
-            name,
-            theory.maps.iter().find(|map| name_of(map) == Some(name))?,
-        ))
-    };
-    let inclusions: Vec<_> = paper::INCLUSIONS.into_iter().filter_map(named).collect();
-    if name_of(&theory.reference) != Some("none") || inclusions.len() < 2 {
+    if theory.reference.phantom().and_then(name_of) != Some("none") {
         return Ok(Vec::new());
     }
-    let bridge = bridge(&AnswerTable::paper()?, &theory.reference, &inclusions, None)?;
-    let playback = bridge.conditions.get(paper::FEM_PLAYBACK).into_iter();
+    let table = AnswerTable::paper()?;
+    let bridge = bridge_to(&table, &theory.reference, &theory.maps, name_of)?;
+    let playback = bridge
+        .iter()
+        .filter_map(|of| of.conditions.get(paper::FEM_PLAYBACK));
     let fits = playback.flat_map(|condition| &condition.conventions);
     Ok(fits.map(Explanation::from).collect())
 }
