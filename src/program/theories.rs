@@ -90,11 +90,10 @@ fn poisson_leverage(config: &Config, phantom: &Phantom) -> Result<f64, FemError>
         let model = Model::new(&changed, config.mesh.size_mm / 1e3, config.mesh.contact)?;
         Ok::<f64, FemError>(model.solve(Pose { depth, lateral })?.force.normal)
     };
-    let materials = phantom.layers().iter().map(|of| of.material);
-    let materials = materials.chain(phantom.inclusions().iter().map(|of| of.material));
     // Half of the way to ν = 0.5 at the most.
-    let most = |most: f64, of: Material| most.min(0.25 / of.poisson_ratio - 0.5);
-    let change = materials
+    let most = |most: f64, of: &Material| most.min(0.25 / of.poisson_ratio - 0.5);
+    let change = phantom
+        .materials()
         .filter(|of| of.poisson_ratio > 0.0)
         .fold(CHANGE, most);
     let [less, more] = [force(1.0 - change)?, force(1.0 + change)?];

@@ -351,6 +351,12 @@ impl Phantom {
         &self.0.inclusions
     }
 
+    /// What layers and inclusions are made of, in their order.
+    pub fn materials(&self) -> impl Iterator<Item = &Material> {
+        let layers = self.layers().iter().map(|layer| &layer.material);
+        layers.chain(self.inclusions().iter().map(|of| &of.material))
+    }
+
     /// The probe.
     pub fn probe(&self) -> Probe {
         self.0.probe
@@ -388,9 +394,7 @@ impl Phantom {
 
     /// Whether there is a mirror image in x, as far as materials and friction go.
     fn has_mirror_image(&self) -> bool {
-        let layers = self.layers().iter().map(|layer| &layer.material);
-        let mut materials = layers.chain(self.inclusions().iter().map(|i| &i.material));
-        self.probe().friction == 0.0 && materials.all(Material::is_symmetric)
+        self.probe().friction == 0.0 && self.materials().all(Material::is_symmetric)
     }
 
     /// The number of each inclusion's mirror image; fewer numbers than inclusions where one has none.

@@ -2,8 +2,8 @@
 //!
 //! Bonet and Wood's compressible neo-Hookean law, W = μ/2 (I₁ − 3 − 2 ln J) + λ/2 (ln J)², with the pressure p = λ ln J
 //! interpolated on its own: λ/2 (ln J)² is written p ln J − p²/(2λ) + α/2 (ln J − p/λ)², which is stationary in p and has the same
-//! value there. Yeoh's second term adds
-//! C₂₀ (I₁ − 3)², and fibres along a, of which E_f is the modulus, add E_f/8 (I₄ − 1)² with I₄ = |F a|².
+//! value there. Yeoh's second term adds C₂₀ (I₁ − 3)², and fibres along a, of which E_f is the modulus, add E_f/8 (I₄ − 1)² with
+//! I₄ = |F a|².
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 
@@ -19,10 +19,7 @@ pub(super) const UNKNOWNS: usize = 2 * NODES + CORNERS;
 ///
 /// Implements: FIN-008.
 pub fn name(phantom: &Phantom) -> String {
-    let inclusions = phantom.inclusions().iter().map(|of| of.material);
-    let materials = phantom.layers().iter().map(|of| of.material);
-    let materials: Vec<Material> = materials.chain(inclusions).collect();
-    let has = |modulus: fn(&Material) -> f64| materials.iter().any(|of| modulus(of) != 0.0);
+    let has = |modulus: fn(&Material) -> f64| phantom.materials().any(|of| modulus(of) != 0.0);
     [
         (true, "neo-Hookean (Bonet and Wood)"),
         (has(|of| of.yeoh_c20), ", Yeoh's second term"),
