@@ -164,23 +164,23 @@ fn the_statistics_battery_traverses_these_force_maps() {
 #[test]
 fn large_strain_is_warned_of() {
     let here = Place::new("warning");
-    let solve = |depth: &str| {
-        let line = "solve --phantom 2.6 --laterals-mm 0 --mesh-mm 2 --depths-mm";
-        text(&here.run(&format!("{line} {depth}")).stderr).to_string()
-    };
-    assert_eq!(solve("1"), "");
-    let warning = solve("4.25");
-    assert_has(&warning, "warning: phantom 2.6|depth 4.25 mm");
-    assert!(!warning.contains("inside out"), "{warning}");
-    let turned = "solve --phantom 2.6 --laterals-mm 0 --mesh-mm 2 --depths-mm 9";
-    let output = here.run(turned);
-    assert_eq!(output.status.code(), Some(4));
-    assert_has(
-        text(&output.stderr),
-        "palpate: phantom 2.6|inside out there",
-    );
-    // The forces are written all the same.
-    assert_has(text(&output.stdout), "9.0");
+    for option in ["", " --path"] {
+        let line = format!("solve --phantom 2.6 --laterals-mm 0 --mesh-mm 2{option} --depths-mm");
+        let solve = |depth: &str| here.run(&format!("{line} {depth}"));
+        let told = |depth: &str| text(&solve(depth).stderr).to_string();
+        assert_eq!(told("1"), "");
+        let warning = told("4.25");
+        assert_has(&warning, "warning: phantom 2.6|depth 4.25 mm");
+        assert!(!warning.contains("inside out"), "{warning}");
+        let output = solve("9");
+        assert_eq!(output.status.code(), Some(4));
+        assert_has(
+            text(&output.stderr),
+            "palpate: phantom 2.6|inside out there",
+        );
+        // The forces are written all the same.
+        assert_has(text(&output.stdout), "9.0");
+    }
 }
 
 // Verifies: CLI-003.

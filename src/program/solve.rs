@@ -159,7 +159,7 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
 
 /// Leads the probe along the path, and prints a row for each pose.
 ///
-/// Implements: CLI-180.
+/// Implements: CLI-180, CLI-015.
 fn along_path(model: &Model, arguments: &SolveArguments) -> Result<(), CliError> {
     let (depths, laterals) = (&arguments.depths[..], &arguments.laterals[..]);
     let (Some(&last), Some((&first, others))) = (depths.last(), laterals.split_first()) else {
@@ -175,7 +175,7 @@ fn along_path(model: &Model, arguments: &SolveArguments) -> Result<(), CliError>
         .map(|(depth, lateral)| Pose { depth, lateral })
         .collect();
     let failed = CliError::fem(model.phantom().name());
-    let path = model.path(&poses).map_err(&failed)?;
+    let (path, checks) = model.path(&poses).map_err(&failed)?;
     if let Some(list) = &arguments.pvd {
         write_series(list, &model.vtu_series(&path).map_err(&failed)?)?;
     }
@@ -191,7 +191,16 @@ fn along_path(model: &Model, arguments: &SolveArguments) -> Result<(), CliError>
             let rows: String = path.iter().map(row).collect();
             format!("lateral_mm,depth_mm,normal_force_n,lateral_force_n\n{rows}")
         }
-    })
+    })?;
+    let smallest = checks.iter().zip(&poses).map(|(check, pose)| SmallestDet {
+        det: check.min_det,
+        depth: pose.depth,
+        lateral: pose.lateral,
+    });
+    let smallest = smallest.min_by(|a, b| a.det.total_cmp(&b.det));
+    let is_small_strain = model.phantom().strain() == Strain::Small;
+    let tell = |of| tell_smallest_det(of, is_small_strain, model.phantom().name());
+    smallest.map_or(Ok(()), tell)
 }
 
 /// Writes a series of meshes beside the `list` of them, numbered from 0.
@@ -223,11 +232,19 @@ pub fn tell_large_strain(map: &ForceMap, phantom: &str) -> Result<(), CliError> 
     let Some(certificate) = map.certificate() else {
         return Ok(());
     };
+    tell_smallest_det(certificate.smallest_det, certificate.law.is_none(), phantom)
+}
+
+fn tell_smallest_det(
+    smallest: SmallestDet,
+    is_small_strain: bool,
+    phantom: &str,
+) -> Result<(), CliError> {
     let SmallestDet {
         det,
         depth,
         lateral,
-    } = certificate.smallest_det;
+    } = smallest;
     let (depth, lateral) = (mm(depth), mm(lateral));
     let found = format!(
         "phantom {phantom}: det(I + grad u) falls to {det:.3} at depth {depth} mm, lateral {lateral} mm"
@@ -237,7 +254,7 @@ pub fn tell_large_strain(map: &ForceMap, phantom: &str) -> Result<(), CliError> 
             "{found}: the gel is turned inside out there, and the forces are meaningless; try smaller depths"
         )));
     }
-    if det < SMALL_STRAIN_LIMIT && certificate.law.is_none() {
+    if det < SMALL_STRAIN_LIMIT && is_small_strain {
         eprintln!("palpate: warning: {found}: the small-strain model is at its limit there");
     }
     Ok(())

@@ -303,19 +303,30 @@ impl Model {
         Ok(solutions)
     }
 
-    /// The gel under a probe that goes from pose to pose; with friction, nodes stick and slip as that way leads them.
+    /// The gel under a probe that goes from pose to pose, with the checks of its fields; with friction, nodes stick and slip as that way
+    /// leads them.
     ///
     /// # Errors
-    /// As [`Model::solve`].
+    /// As [`Model::solve`]; [`FemError::Residual`].
     ///
-    /// Implements: FIN-011.
-    pub fn path(&self, poses: &[Pose]) -> Result<Vec<PoseSolution>, FemError> {
-        let (Some(finite), Some(first)) = (&self.finite, poses.first()) else {
-            return poses.iter().map(|&pose| self.solve(pose)).collect();
+    /// Implements: FIN-011, FEM-008.
+    pub fn path(&self, poses: &[Pose]) -> Result<(Vec<PoseSolution>, Vec<FieldCheck>), FemError> {
+        let path: Vec<PoseSolution> = match (&self.finite, poses.first()) {
+            (Some(finite), Some(first)) => {
+                let finite = finite.along_path();
+                let path = finite.path(finite.untouched(first.lateral), poses)?;
+                path.into_iter().map(PoseSolution::from).collect()
+            }
+            _ => poses
+                .iter()
+                .map(|&pose| self.solve(pose))
+                .collect::<Result<_, _>>()?,
         };
-        let finite = finite.along_path();
-        let path = finite.path(finite.untouched(first.lateral), poses)?;
-        Ok(path.into_iter().map(PoseSolution::from).collect())
+        let checks = self.checks(&path)?;
+        for check in &checks {
+            check_residual(check.residual)?;
+        }
+        Ok((path, checks))
     }
 
     /// The force map over `depths` × `laterals` (m, both increasing) with its certificate. Negative lateral

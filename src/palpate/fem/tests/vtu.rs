@@ -23,7 +23,8 @@ fn a_series_tells_pressure_shear_and_slip() {
     let model = Model::new(&phantom.unwrap(), 1.5e-3, Contact::default()).unwrap();
     let across = [0.02, 1.0, 2.0, 3.0].map(|x| pose(2e-3, 1e-3 * x));
     let poses = [vec![pose(1e-3, 0.0), pose(2e-3, 0.0)], across.into()].concat();
-    let path = model.path(&poses).unwrap();
+    let (path, checks) = model.path(&poses).unwrap();
+    assert!(checks.iter().all(|check| check.min_det > 0.8));
     let series = model.vtu_series(&path).unwrap();
     assert_eq!(series.len(), 6);
     let of = |at: usize| {
