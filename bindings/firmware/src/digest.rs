@@ -1,6 +1,6 @@
 //! One number for all results of the core over a fixed sweep of inputs, so that processors can be compared.
 
-mod draw;
+pub mod draw;
 mod kernel;
 mod records;
 #[cfg(test)]
@@ -89,6 +89,7 @@ const SWEEPS: &[Sweep] = sweeps! {
     "theta at every shift", 256: |d| records::scanned(d);
     "theta beside nuisances", 256: |d| records::beside_nuisances(d);
     "theta in coloured noise", 256: |d| records::in_coloured_noise(d);
+    "theta row by row", 512: |d| records::row_by_row(d);
 };
 
 /// Prints the digest of each function and of all; the one of all.

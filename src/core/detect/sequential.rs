@@ -3,16 +3,20 @@
 //!
 //! [`super::nuisance`] needs the whole record. Here a row, one sample of one channel over the standard deviation of its noise, is
 //! rotated into a triangle of what the nuisances explain; what is left of it, the innovation, adds to the sums of each hypothesis.
+//! The rotations are Gentleman's, without square roots: each line of the triangle, and the row, has a weight, the square of the factor
+//! that its numbers lack.
 
 use super::{Decision, DetectError, ErrorRates, error_rates};
 use crate::stats::error::{check_finite, check_length, check_probability, in_range};
 
-/// The share of a nuisance's length, and the number, up to which what is left of it is rounding.
+/// The squares of the share of a nuisance's length, and of the number, up to which what is left of it is rounding.
 ///
 /// Implements: SEQ-003.
-const ROUNDING: (f64, f64) = (1e-12, 1e-100);
-/// The largest number of a row: squares and their sums are far from overflow.
-const LARGEST: f64 = 1e100;
+const ROUNDING: (f64, f64) = (1e-24, 1e-160);
+/// The largest number of a row: quotients, squares and their sums are far from overflow.
+const LARGEST: f64 = 1e80;
+/// The weight below which the numbers of a row take it over, lest they grow.
+const LEAST_WEIGHT: f64 = 1e-20;
 /// The part of |δ|² up to which the nuisances explain a signal.
 const EXPLAINED: f64 = super::nuisance::DEPENDENT * super::nuisance::DEPENDENT;
 
@@ -37,7 +41,8 @@ const EXPLAINED: f64 = super::nuisance::DEPENDENT * super::nuisance::DEPENDENT;
 #[derive(Debug, Clone)]
 pub struct Sequential<M> {
     /// Lines of p + 1 + K numbers, one for each nuisance, the residual and each signal: the row at hand; the sums of squares of all
-    /// rows; those of what is left; the products of what is left with that of the residual; then the triangle, a line a nuisance.
+    /// rows, of nuisances alone; those of what is left; the products of what is left with that of the residual; then the triangle, a
+    /// line a nuisance: 0 before its own column, there its weight, then its numbers.
     memory: M,
     nuisances: usize,
     hypotheses: usize,
@@ -99,7 +104,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> Sequential<M> {
     /// all over s. A residual that is NaN is missing.
     ///
     /// # Errors
-    /// Another length; NaN in a nuisance or signal; a number that is infinite or above 10¹⁰⁰ in magnitude. Nothing changes.
+    /// Another length; NaN in a nuisance or signal; a number that is infinite or above 10⁸⁰ in magnitude. Nothing changes.
     ///
     /// Implements: SEQ-001, SEQ-003, SEQ-005, SEQ-006, SEQ-007.
     pub fn push(
@@ -125,20 +130,22 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> Sequential<M> {
         row[..p].copy_from_slice(nuisances);
         row[p] = residual;
         row[p + 1..].copy_from_slice(signals);
-        for (sum, value) in squares.iter_mut().zip(&*row) {
+        for (sum, value) in squares.iter_mut().zip(nuisances) {
             *sum += value * value;
         }
+        let mut weight = 1.0;
         for (at, line) in triangle.chunks_exact_mut(width).enumerate() {
-            let least = f64::max(ROUNDING.0 * libm::sqrt(squares[at]), ROUNDING.1);
-            if line[at] > 0.0 || row[at].abs() > least {
-                rotate(&mut line[at..], &mut row[at..]);
+            let least = || f64::max(ROUNDING.0 * squares[at], ROUNDING.1);
+            if line[at] > 0.0 || weight * row[at] * row[at] > least() {
+                rotate(&mut line[at..], &mut row[at..], &mut weight);
             }
         }
         let innovation = row[p];
         let sums = left[p..].iter_mut().zip(&mut along[p..]);
         for ((left, along), value) in sums.zip(&row[p..]) {
-            *left += value * value;
-            *along += value * innovation;
+            let weighted = weight * value;
+            *left += weighted * value;
+            *along += weighted * innovation;
         }
         Ok(())
     }
@@ -157,15 +164,26 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> Sequential<M> {
     ///
     /// Implements: SEQ-001, SEQ-004.
     pub fn evidence(&self) -> impl Iterator<Item = Evidence> {
-        let [squares, left, along] = [1, 2, 3].map(|number| &self.line(number)[1..]);
-        let sums = squares.iter().zip(left).zip(along);
-        sums.map(|((squares, &gamma_squared), &along)| {
-            let is_left = gamma_squared > EXPLAINED * squares;
-            Evidence {
-                along: if is_left { along } else { 0.0 },
-                gamma_squared: if is_left { gamma_squared } else { 0.0 },
-            }
-        })
+        let [left, along] = [2, 3].map(|number| &self.line(number)[1..]);
+        left.iter()
+            .zip(along)
+            .enumerate()
+            .map(|(k, (&gamma_squared, &along))| {
+                let explained = |at: usize| {
+                    self.pivot(at) * self.line(4 + at)[1 + k] * self.line(4 + at)[1 + k]
+                };
+                let explained: f64 = (0..self.nuisances).map(explained).sum();
+                let is_left = gamma_squared > EXPLAINED * (gamma_squared + explained);
+                Evidence {
+                    along: if is_left { along } else { 0.0 },
+                    gamma_squared: if is_left { gamma_squared } else { 0.0 },
+                }
+            })
+    }
+
+    /// The weight of a nuisance's line, 0 where the rows do not tell it from those before it.
+    fn pivot(&self, nuisance: usize) -> f64 {
+        self.memory.as_ref()[(4 + nuisance) * self.width() + nuisance]
     }
 
     /// |Pz|²: Σ of the squares that the nuisances do not explain.
@@ -191,26 +209,41 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> Sequential<M> {
     ///
     /// Implements: SEQ-003.
     pub fn rank(&self) -> usize {
-        let triangle = self.memory.as_ref().chunks_exact(self.width()).skip(4);
-        let pivots = triangle.enumerate().map(|(at, line)| line[at]);
-        pivots.filter(|pivot| *pivot > 0.0).count()
+        (0..self.nuisances)
+            .filter(|&nuisance| self.pivot(nuisance) > 0.0)
+            .count()
     }
 }
 
-/// Givens' rotation of two lines that makes the first number of the second 0.
-fn rotate(line: &mut [f64], row: &mut [f64]) {
-    let (Some((pivot, line)), Some((head, row))) = (line.split_first_mut(), row.split_first_mut())
+/// Gentleman's rotation of a line, which begins with its weight, and a row of this weight, of which the first number becomes 0.
+fn rotate(line: &mut [f64], row: &mut [f64], row_weight: &mut f64) {
+    let (Some((weight, line)), Some((head, row))) = (line.split_first_mut(), row.split_first_mut())
     else {
         return;
     };
     if *head == 0.0 {
         return;
     }
-    let length = libm::sqrt(*pivot * *pivot + *head * *head);
-    let (cosine, sine) = (*pivot / length, *head / length);
-    (*pivot, *head) = (length, 0.0);
-    for (line, row) in line.iter_mut().zip(row) {
-        (*line, *row) = (cosine * *line + sine * *row, cosine * *row - sine * *line);
+    let weighted = *row_weight * *head;
+    let sum = *weight + weighted * *head;
+    let (cosine, sine) = (*weight / sum, weighted / sum);
+    let numbers = line.iter_mut().zip(&mut *row);
+    if cosine > 0.25 {
+        // A product less than below. The numbers of a line lose what rounds away at 1/cosine times their squares.
+        for (line, row) in numbers {
+            *row -= *head * *line;
+            *line += sine * *row;
+        }
+    } else {
+        for (line, row) in numbers {
+            (*line, *row) = (cosine * *line + sine * *row, *row - *head * *line);
+        }
+    }
+    (*weight, *row_weight, *head) = (sum, *row_weight * cosine, 0.0);
+    if *row_weight < LEAST_WEIGHT {
+        let root = libm::sqrt(*row_weight);
+        row.iter_mut().for_each(|number| *number *= root);
+        *row_weight = 1.0;
     }
 }
 
@@ -221,7 +254,7 @@ fn check_row(what: &'static str, row: &[f64], length: usize) -> Result<(), Detec
     let is_right = |value: &f64| value.abs() <= LARGEST;
     match row.iter().find(|value| !is_right(value)) {
         None => Ok(()),
-        Some(&value) => in_range(false, what, value, "at most 1e100 in magnitude").map(|_| ()),
+        Some(&value) => in_range(false, what, value, "at most 1e80 in magnitude").map(|_| ()),
     }
 }
 

@@ -5,11 +5,14 @@
 use core::fmt::Write;
 use core::hint::black_box;
 
+use palpate_core::detect::DetectError;
+use palpate_core::detect::sequential::{Sequential, memory};
 use palpate_core::force::Force;
 use palpate_core::hid::PAPER as DISPLAY;
 use palpate_core::servo::{Command, Input, Mode, Request, Sample, State};
 use palpate_firmware::board::{self, Text, instructions, stack_of};
 use palpate_firmware::device::{Device, Frame};
+use palpate_firmware::digest::draw::Draw;
 use palpate_firmware::table::PAPER;
 use palpate_firmware::{digest, scenario};
 
@@ -98,7 +101,55 @@ fn measured(mut device: Device) -> bool {
         Text,
         "a step: {stack} bytes of stack, at most {MOST_STACK} allowed"
     );
-    most <= MOST_INSTRUCTIONS && stack <= MOST_STACK && measures_right()
+    most <= MOST_INSTRUCTIONS && stack <= MOST_STACK && pushed() && measures_right()
+}
+
+/// What a sequential detector of 16 hypotheses takes for a row, beside the nuisances of FIR-013.
+///
+/// Implements: FIR-013.
+fn pushed() -> bool {
+    pushed_beside::<5, { memory(16, 5) }>(40_000) && pushed_beside::<6, { memory(16, 6) }>(60_000)
+}
+
+/// Rows beside offset and drift of two channels, gain and, the sixth, depth.
+fn pushed_beside<const NUISANCES: usize, const MEMORY: usize>(allowed: u32) -> bool {
+    let Ok(mut found) = Sequential::new([0.0; MEMORY], 16, NUISANCES) else {
+        return false;
+    };
+    let mut rows = Range::NOTHING;
+    for number in 0..200 {
+        let mut draw = Draw::new(number);
+        let signals = [(); 16].map(|()| draw.between(-3.0, 3.0));
+        let [residual, gain, depth] = [3.0, 9.0, 4.0].map(|most| draw.between(0.0, most));
+        let time = (number / 2) as f64;
+        let nuisances = match number % 2 {
+            0 => [1.0, time, 0.0, 0.0, gain, depth],
+            _ => [0.0, 0.0, 1.0, time, gain, depth],
+        };
+        let (nuisances, signals) = (black_box(&nuisances[..NUISANCES]), black_box(&signals));
+        if rows
+            .of(|| push(&mut found, residual, nuisances, signals))
+            .is_err()
+        {
+            return false;
+        }
+    }
+    let Range { least, most } = rows;
+    let _ = writeln!(
+        Text,
+        "a row of 16 hypotheses beside {NUISANCES} nuisances: {least} to {most} instructions, at most {allowed} allowed"
+    );
+    most <= allowed
+}
+
+#[inline(never)]
+fn push<const N: usize>(
+    found: &mut Sequential<[f64; N]>,
+    residual: f64,
+    nuisances: &[f64],
+    signals: &[f64],
+) -> Result<(), DetectError> {
+    found.push(residual, nuisances, signals)
 }
 
 /// Steps in the middle of playing at 120 × 121 places within the table and beyond its sides.

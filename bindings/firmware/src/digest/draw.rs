@@ -43,6 +43,7 @@ impl Draw {
         self.word().is_multiple_of(count)
     }
 
+    /// A number between two others.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * uniform(self.word())
     }

@@ -1,10 +1,11 @@
-//! Questions about records of 8 samples a channel: in white noise, at every shift, beside nuisances and in coloured noise.
+//! Questions about records of 8 samples a channel: in white noise, at every shift, beside nuisances, in coloured noise and row by row.
 
 use core::fmt::Debug;
 
 use palpate_core::detect::coloured::{ColouredStatistic, coloured_scratch, theta_coloured};
 use palpate_core::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
 use palpate_core::detect::scan::{Scan, ScanMaximum};
+use palpate_core::detect::sequential::{Sequential, Wald, memory};
 use palpate_core::detect::{DetectError, MatchedFilter, Statistic, theta_of_record};
 use palpate_core::force::Force;
 
@@ -78,4 +79,19 @@ pub fn in_coloured_noise(draw: &mut Draw) -> Result<ColouredStatistic, DetectErr
     let Force { lateral, normal } = draw.series::<N>();
     let scratch = &mut [0.0; coloured_scratch(N)];
     theta_coloured(&lateral, &normal, covariance.as_flattened(), scratch)
+}
+
+/// What 8 rows say of three signals beside two nuisances, and Wald's test of it.
+pub fn row_by_row(draw: &mut Draw) -> Result<impl Debug, DetectError> {
+    let mut found = Sequential::new([0.0; memory(3, 2)], 3, 2)?;
+    let pushed = [(); N].map(|()| {
+        let [residual, nuisance, a, b, c] = [(); 5].map(|()| draw.number(-3.0, 3.0));
+        found.push(residual, &[1.0, nuisance], &[a, b, c])
+    });
+    let test = Wald::new(draw.rate(), draw.rate());
+    let mut evidence = found.evidence();
+    let evidence = [(); 3].map(|()| evidence.next());
+    let decided = evidence.map(|one| Some(test.ok()?.decide(one?.theta())));
+    let counts = (found.rows(), found.missing(), found.rank());
+    Ok((pushed, evidence, found.residual(), counts, test, decided))
 }
