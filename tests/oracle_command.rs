@@ -306,6 +306,10 @@ fn work_beyond_the_limits_is_refused_before_it_begins() {
         json!({"residual": [1, 2, 0], "templates": [[0, 1, 0]], "nuisances": vec![[1, 1, 1]; number], "level": "known",
                "prior": [1], "prior_h1": 0.5})
     };
+    let rows = |nuisances: usize, templates: usize| {
+        json!({"residual": [1], "templates": vec![[1]; templates], "nuisances": vec![[1]; nuisances], "max_false_alarm": 0.01,
+               "max_miss": 0.01})
+    };
     let robust = |modes: usize, classes: usize, signals: usize| {
         json!({"record": ones(modes), "noise": ones(modes), "weights": ones(classes), "signals": vec![ones(modes); signals],
                "covariances": vec![vec![0; modes]; modes * classes], "sizes": ones(signals),
@@ -315,6 +319,7 @@ fn work_beyond_the_limits_is_refused_before_it_begins() {
     ok("robust_evidence", robust(1, 100, 1000));
     ok("theta_nuisances", beside(100));
     ok("bank_posterior", bank(100));
+    ok("sequential_evidence", rows(100, 1000));
     // 1000 products at each of the shifts of the whole template: 10,000 shifts are allowed.
     ok("scan", scan(10_999, 1000));
     for (op, args, words) in [
@@ -323,6 +328,8 @@ fn work_beyond_the_limits_is_refused_before_it_begins() {
         ("theta_colored", coloured, "at most 1000"),
         ("theta_nuisances", beside(101), "at most 100"),
         ("bank_posterior", bank(101), "at most 100"),
+        ("sequential_evidence", rows(101, 1), "at most 100"),
+        ("sequential_evidence", rows(1, 1001), "at most 1000"),
         ("robust_evidence", robust(201, 1, 1), "at most 200"),
         ("robust_evidence", robust(1, 101, 1), "at most 100"),
         ("robust_evidence", robust(1, 1, 1001), "at most 1000"),

@@ -125,6 +125,23 @@ def bank_posterior(a):
     }
 
 
+def sequential_evidence(a):
+    """For every beginning of the record the exact Gram matrix, and the test by the ratio of likelihoods itself."""
+    count = len(a["templates"])
+    answer = {"inclusion_at": [0] * count, "no_inclusion_at": [0] * count}
+    for rows in range(1, len(a["residual"]) + 1):
+        first = lambda columns: [column[:rows] for column in columns]
+        gram, squares, rank = beside(first(a["nuisances"]), first([*a["templates"], a["residual"]]))
+        kept = [gram[k][k] * 10**18 > squares[k] for k in range(count)]
+        theta = [real(gram[k][-1] - gram[k][k] / 2) if kept[k] else mpf(0) for k in range(count)]
+        for k, ratio in enumerate(map(exp, theta)):
+            if answer["inclusion_at"][k] + answer["no_inclusion_at"][k] == 0:
+                answer["inclusion_at"][k] = rows * (ratio * real(a["max_false_alarm"]) >= 1)
+                answer["no_inclusion_at"][k] = rows * (ratio <= real(a["max_miss"]))
+    gamma = [sqrt(real(gram[k][k])) if kept[k] else mpf(0) for k in range(count)]
+    return {**answer, "theta": theta, "gamma": gamma, "residual": real(gram[-1][-1]), "rank": rank}
+
+
 def normal_density(covariance, record):
     """ln of the density without (2π)^(−n/2), and the distance squared, by elimination in the exact matrix with the record as another
     row and column: the pivots are the determinant's factors, and the last entry is −yᵀK⁻¹y."""
@@ -324,7 +341,7 @@ def element_stiffness(a):
 ROUTES = {
     route.__name__: route
     for route in (
-        chi_square_tail, f_tail, student_tail, theta_nuisances, bank_posterior, robust_evidence, servo_axis, servo_interpolate,
+        chi_square_tail, f_tail, student_tail, theta_nuisances, bank_posterior, sequential_evidence, robust_evidence, servo_axis, servo_interpolate,
         element_stiffness,
     )
 }

@@ -172,7 +172,7 @@ def scan(residual_x: series, residual_y: series, template_x: series, template_y:
 class Subspace:
     """What the nuisances span (NUI-001)."""
 
-    def __init__(self, signals, samples):
+    def __init__(self, signals, samples, least_degrees=1):
         refuse_if(len(signals) > 100 or any(len(s) != samples for s in signals), "bad_argument", "nuisances of another length, or over 100")
         self.basis, kept = np.zeros((samples, 0)), []
         for signal in (s / linalg.norm(s) for s in signals if s.any()):
@@ -180,7 +180,7 @@ class Subspace:
             if len(r) > len(kept) and abs(r[-1, -1]) >= 1e-9:
                 self.basis, kept = q, [*kept, signal]
         self.degrees = samples - len(kept) - 1
-        refuse_if(self.degrees < 1, "out_of_range", "p nuisances need p + 2 samples")
+        refuse_if(self.degrees < least_degrees, "out_of_range", "p nuisances need p + 2 samples")
 
     def beside(self, v):
         for _ in range(2):
@@ -245,6 +245,24 @@ def bank_posterior(residual: series, templates: rows, nuisances: rows, level: is
             "posterior_h1": special.expit(mixture + special.logit(prior_h1)), "posterior": prior * np.exp(theta - mixture)}  # fmt: skip
 
 
+def sequential_evidence(residual: series, templates: rows, nuisances: rows, max_false_alarm: probability, max_miss: probability):
+    refuse_if(len(residual) == 0 or len(templates) == 0, "bad_argument", "no rows, or no templates")
+    refuse_if(max_false_alarm + max_miss >= 1, "out_of_range", "the rates add up to 1 or more")
+    nuisances, templates = (matrix.reshape(-1, len(residual)) for matrix in (nuisances, templates))
+    ends = np.zeros((2, len(templates)), dtype=int)
+    for end in range(1, len(residual) + 1):
+        basis = Subspace(nuisances[:, :end], end, least_degrees=-1).basis
+        beside = lambda values: values - (values @ basis) @ basis.T
+        z, left = beside(beside(residual[:end])), beside(beside(templates[:, :end]))
+        squares = np.sum(left**2, axis=1)
+        is_left = squares > 1e-18 * np.sum(templates[:, :end] ** 2, axis=1)
+        theta = np.where(is_left, left @ z - squares / 2, 0.0)
+        goes_on = ends.sum(axis=0) == 0
+        ends += end * goes_on * np.array([theta >= -np.log(max_false_alarm), theta <= np.log(max_miss)])
+    return {"theta": theta, "gamma": np.sqrt(np.where(is_left, squares, 0.0)), "residual": z @ z, "rank": basis.shape[1],
+            "inclusion_at": ends[0], "no_inclusion_at": ends[1]}  # fmt: skip
+
+
 # Classes of disturbance (spec/robust.md)
 
 
@@ -288,7 +306,7 @@ def capabilities():
 OPS = {op.__name__: op for op in (
     capabilities, normal_cdf, normal_quantile, two_afc, gamma_from_two_afc, error_rates, roc, required_gamma, noise_budget, threshold,
     proportion_interval, count_analysis, chi_square_tail, f_tail, student_tail, matched_filter, theta, theta_colored, scan,
-    theta_nuisances, bank_posterior, robust_evidence, *scipy_tables.OPS)}  # fmt: skip
+    theta_nuisances, bank_posterior, sequential_evidence, robust_evidence, *scipy_tables.OPS)}  # fmt: skip
 
 if __name__ == "__main__":
     with np.errstate(all="ignore"):

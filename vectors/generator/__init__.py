@@ -6,13 +6,13 @@ Implements: VEC-008.
 from multiprocessing import Pool
 
 from . import bank, conditions, coloured, decision, elements, filters, normal, nuisances, probe, proportions, quadratic, reports, requests
-from . import robust, scan, servo, tables, threshold
+from . import robust, scan, sequential, servo, tables, threshold
 from .suite import VERSION
 
 __all__ = ["VERSION", "all_groups"]
 
 TOPICS = (
-    normal, decision, threshold, filters, coloured, nuisances, bank, robust, scan, proportions, quadratic, tables, servo, reports, elements, probe, requests
+    normal, decision, threshold, filters, coloured, nuisances, bank, robust, sequential, scan, proportions, quadratic, tables, servo, reports, elements, probe, requests
 )
 
 

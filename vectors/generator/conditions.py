@@ -11,7 +11,7 @@ from math import frexp
 import second_route
 from mpmath import mpf, sqrt, workdps
 
-from . import bank, normal, nuisances, proportions, quadratic, robust
+from . import bank, normal, nuisances, proportions, quadratic, robust, sequential
 from .numbers import UNIT, Draws, exact, nearest, real, round_up
 from .suite import UNKNOWN, allowed, leaves, settle
 
@@ -134,6 +134,8 @@ SIZES = {
     **dict.fromkeys(["theta.theta", "theta_colored.theta", "theta_nuisances.theta"], mean_and_deviation),
     **dict.fromkeys(["scan.theta", "scan.max_theta"], lambda a, ok: largest(ok["theta"])),
     **{f"bank_posterior.theta{part}": lambda a, ok: max(1, largest(ok["theta"])) for part in ("", "_mixture", "_max")},
+    **{f"sequential_evidence.{key}": lambda a, ok, key=key: max(1, largest([ok[key]])) for key in ("theta", "gamma")},
+    "sequential_evidence.residual": lambda a, ok: len(a["residual"]),
     **{f"robust_evidence.{key}": lambda a, ok, key=key: max(1, largest([ok[key]])) for key in ("without", "by_class", "with", "theta")},
     "robust_evidence.distance": lambda a, ok: len(a["record"]),
     **{f"theta.y_{c}": lambda a, ok, c=c: a[f"noise_sd_{c}"] / len(a["f0_x"]) ** 0.5 for c in "xy"},
@@ -181,6 +183,10 @@ def of_answer(op, args, ok, condition):
             yield DEPENDENT
         may_be = [k for k, theta in enumerate(ok["theta"]) if theta != 0 and args["prior"][k] > 0]
         yield from of_decision(ok["theta"], condition["theta"], may_be)
+    if op == "sequential_evidence":
+        if 0 in ok["gamma"]:
+            yield DEPENDENT
+        yield sequential.nearest_bound(args) / (16 * max(condition["theta"]))
     if op == "robust_evidence":
         yield robust.lead(args) / (4 * max(map(max, map(condition.get, ("without", "with")))))
     yield from of_squares(op, args, ok)

@@ -92,6 +92,10 @@ BUGS = {
     ),
     "impossible_counts": ("Θ_max of a hypothesis that cannot be, or that the nuisances explain", ""),
     "posterior_for_theta": ("the hypothesis of the largest posterior for that of the largest θ", ""),
+    # Row by row
+    "walds_bounds": ("Wald's bounds ln((1 − β)/α) and ln(β/(1 − α))", "they keep the sum of the rates alone; −ln α and ln β keep each"),
+    "rows_alone": ("each row is tested alone", "θ is of all rows so far"),
+    "last_row_alone": ("the test is made at the last row alone", "it ends at the first θ beyond a bound"),
     # Classes of disturbance
     "weights_not_normalised": ("the weights of the classes are not divided by their sum", ""),
     "weights_ignored": ("all classes are taken for equally probable", ""),

@@ -40,8 +40,8 @@ enum PalpateError
   PALPATE_ERROR_KNOTS,
   // A force of the table is not a number within 100 N.
   PALPATE_ERROR_TABLE_FORCE,
-  // The structure is no table that `palpate_table_init` made.
-  PALPATE_ERROR_NOT_A_TABLE,
+  // The structure is not what its `init` made.
+  PALPATE_ERROR_NOT_INITIALISED,
   // A limit of the servo loop is out of its range.
   PALPATE_ERROR_LIMITS,
   // The bytes are no report of this kind.
@@ -381,12 +381,42 @@ typedef struct {
   double refined_shift;
 } PalpateScanMaximum;
 
+// A structure of the library in the caller's memory.
+typedef struct {
+  // Says what the words hold.
+  size_t tag;
+  // The structure.
+  size_t words[16];
+} PalpateKept;
+
+// What `palpate_sequential_init` makes of the caller's memory, to which it keeps a pointer. Its content is the library's.
+typedef struct {
+  PalpateKept kept;
+} PalpatePreparedSequential;
+
+// What the rows so far say of one hypothesis.
+typedef struct {
+  // (Pδ)ᵀz.
+  double along;
+  // γ² = |Pδ|², 0 where the nuisances explain the signal.
+  double gamma_squared;
+} PalpateEvidence;
+
+// What all hypotheses have in common.
+typedef struct {
+  // Σ of the squares that the nuisances do not explain.
+  double residual;
+  // The rows so far, without the missing ones.
+  size_t rows;
+  // The rows that were missing.
+  size_t missing;
+  // How many nuisances the rows tell apart.
+  size_t rank;
+} PalpateSequentialRows;
+
 // What `palpate_table_init` makes of knots and forces, to which it keeps pointers. Its content is the library's.
 typedef struct {
-  // Says that the words hold a table.
-  size_t tag;
-  // A table of the kernel.
-  size_t words[16];
+  PalpateKept kept;
 } PalpatePreparedTable;
 
 // Where a position lies: a cell of an axis, and the fraction of its width.
@@ -596,6 +626,40 @@ PalpateError palpate_scan(const PalpateSeries *residual,
                           double *theta,
                           size_t count,
                           PalpateScanMaximum *maximum);
+
+// How many numbers a detector of so many hypotheses beside so many nuisances needs.
+size_t palpate_sequential_memory(size_t hypotheses, size_t nuisances);
+
+// Makes a detector before its first row. It keeps a pointer to the `length` numbers of `memory`, as many as `palpate_sequential_memory`
+// says: they must stay where they are, unchanged by others, as long as it is used. A copy of the detector is no second one.
+PalpateError palpate_sequential_init(size_t hypotheses,
+                                     size_t nuisances,
+                                     double *memory,
+                                     size_t length,
+                                     PalpatePreparedSequential *detector);
+
+// Adds a row: one sample of one channel over the standard deviation of its noise. `residual` is F_p − F_0, NaN if it is missing;
+// `nuisances` what each adds for an amplitude of 1; `signals` F_k − F_0 of each hypothesis.
+PalpateError palpate_sequential_push(PalpatePreparedSequential *detector,
+                                     double residual,
+                                     const double *nuisances,
+                                     size_t nuisance_count,
+                                     const double *signals,
+                                     size_t signal_count);
+
+// What the rows so far say of each hypothesis, into `evidence`, a list of `count` that overlaps nothing. θ is along − gamma_squared/2.
+PalpateError palpate_sequential_evidence(const PalpatePreparedSequential *prepared,
+                                         PalpateEvidence *evidence,
+                                         size_t count);
+
+// Counts the rows so far.
+PalpateError palpate_sequential_rows(const PalpatePreparedSequential *prepared, PalpateSequentialRows *rows);
+
+// Wald's test with at most these rates of false alarms and of misses: 1 for an inclusion, −1 for none, 0 while it goes on.
+PalpateError palpate_wald(double max_false_alarm,
+                          double max_miss,
+                          double theta,
+                          int8_t *decision);
 
 // Makes a table of depths and lateral positions (m, increasing) and of the force at each pair (N): `depths` rows of `laterals`
 // forces. `scratch` has depths + laterals − 2 numbers.

@@ -40,8 +40,8 @@ pub enum Error {
     Knots,
     /// A force of the table is not a number within 100 N.
     TableForce,
-    /// The structure is no table that `palpate_table_init` made.
-    NotATable,
+    /// The structure is not what its `init` made.
+    NotInitialised,
     /// A limit of the servo loop is out of its range.
     Limits,
     /// The bytes are no report of this kind.
@@ -66,7 +66,7 @@ const TEXTS: [&CStr; 18] = [
     c"the answer is too large for a double",
     c"the knots are wrong; give 2 to 1024 within 1 m, each at least 1e-6 m above the one before",
     c"a force of the table is wrong; give a number within 100 N",
-    c"the table was not made by palpate_table_init",
+    c"the structure was not made by its init",
     c"a limit of the servo loop is out of its range",
     c"the bytes are no report of this kind: wrong length, number or value",
     c"the device's capabilities are wrong: version, a unit of 0, or a largest force that no report holds",

@@ -31,6 +31,8 @@ layout! {
     ColouredEvidence { without, with, distance_without, distance_with }
     SubspaceStatistic { t, gamma, gamma_nominal, residual, theta, rates, rank, degrees }
     ScanMaximum { theta, gamma, shift, refined_shift }
+    Evidence { along, gamma_squared }
+    SequentialRows { residual, rows, missing, rank }
     Tails { lower, upper }
     Interval { lower, upper }
     Costs { c00, c01, c10, c11 }

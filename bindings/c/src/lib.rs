@@ -20,6 +20,7 @@ mod laws;
 mod layout;
 mod memory;
 mod record;
+mod sequential;
 mod servo;
 
 pub use decision::*;
@@ -28,6 +29,7 @@ pub use hid_report::*;
 pub use laws::*;
 pub use layout::LAYOUT;
 pub use record::*;
+pub use sequential::*;
 pub use servo::*;
 
 /// A panic would be a defect of this library: it ends the program.

@@ -1,8 +1,64 @@
 //! The caller's memory, checked before it is used.
 
+use core::mem::{MaybeUninit, needs_drop};
 use core::ops::Range;
 
 use crate::Error;
+
+/// A structure of the library in the caller's memory.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Kept {
+    /// Says what the words hold.
+    tag: usize,
+    /// The structure.
+    words: [MaybeUninit<usize>; 16],
+}
+
+impl Kept {
+    /// Keeps `value`. The tag is a number that no memory holds by chance, and stands for T alone.
+    pub fn new<T>(tag: usize, value: T) -> Kept {
+        const {
+            assert!(
+                size_of::<T>() <= size_of::<[usize; 16]>()
+                    && align_of::<T>() <= align_of::<usize>()
+            );
+            assert!(!needs_drop::<T>());
+        }
+        let mut words = [MaybeUninit::uninit(); 16];
+        // SAFETY: the words have room for the value, and its alignment. It has nothing to drop.
+        unsafe { words.as_mut_ptr().cast::<T>().write(value) };
+        Kept { tag, words }
+    }
+
+    /// What is kept at an address.
+    ///
+    /// # Safety
+    /// As the crate says; what the value points to is where it was.
+    pub unsafe fn get<'a, T>(place: *const Kept, tag: usize) -> Result<&'a T, Error> {
+        check(place)?;
+        // SAFETY: neither null nor unaligned; by its tag, `new` wrote the words.
+        let kept = unsafe { &*place };
+        match kept.tag == tag {
+            true => Ok(unsafe { &*kept.words.as_ptr().cast::<T>() }),
+            false => Err(Error::NotInitialised),
+        }
+    }
+
+    /// What is kept at an address, to change it.
+    ///
+    /// # Safety
+    /// As of [`Kept::get`]; nothing else uses it meanwhile.
+    pub unsafe fn get_mut<'a, T>(place: *mut Kept, tag: usize) -> Result<&'a mut T, Error> {
+        check(place)?;
+        // SAFETY: as above.
+        let kept = unsafe { &mut *place };
+        match kept.tag == tag {
+            true => Ok(unsafe { &mut *kept.words.as_mut_ptr().cast::<T>() }),
+            false => Err(Error::NotInitialised),
+        }
+    }
+}
 
 /// Checks an address.
 fn check<T>(start: *const T) -> Result<(), Error> {

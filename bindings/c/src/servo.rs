@@ -2,14 +2,12 @@
 //!
 //! Implements: CLB-003, CLB-010, CLB-012.
 
-use core::mem::MaybeUninit;
-
 use palpate_core::force::Force;
 use palpate_core::servo::{self, Axis, Fault, Limits, Mode, Table};
 pub use palpate_core::servo::{Cell, Request};
 
 use crate::Error;
-use crate::memory::{bytes, check_apart, give, list, list_mut, read};
+use crate::memory::{Kept, bytes, check_apart, give, list, list_mut, read};
 
 /// A force on the probe, N.
 pub type ServoForce = Force<f32>;
@@ -18,41 +16,17 @@ pub type ServoForce = Force<f32>;
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct PreparedTable {
-    /// Says that the words hold a table.
-    tag: usize,
-    /// A table of the kernel.
-    words: [MaybeUninit<usize>; 16],
+    kept: Kept,
 }
 
-/// What no memory holds by chance.
 const TAG: usize = 0x7ab1_e5e7;
-
-const _: () = assert!(
-    size_of::<Table>() <= size_of::<[usize; 16]>() && align_of::<Table>() <= align_of::<usize>()
-);
-
-impl PreparedTable {
-    fn new(table: Table) -> PreparedTable {
-        let mut words = [MaybeUninit::uninit(); 16];
-        // SAFETY: the words have room for a table, and its alignment. A table has nothing to drop.
-        unsafe { words.as_mut_ptr().cast::<Table>().write(table) };
-        PreparedTable { tag: TAG, words }
-    }
-}
 
 /// The table at an address.
 ///
 /// # Safety
 /// As the crate says; knots, reciprocals and forces are where they were when the table was made.
 unsafe fn table<'a>(place: *const PreparedTable) -> Result<&'a Table<'a>, Error> {
-    let [prepared] = (unsafe { list(place, 1) })? else {
-        return Err(Error::NullPointer);
-    };
-    if prepared.tag != TAG {
-        return Err(Error::NotATable);
-    }
-    // SAFETY: by its tag, `palpate_table_init` wrote these words.
-    Ok(unsafe { &*prepared.words.as_ptr().cast::<Table>() })
+    unsafe { Kept::get(place.cast(), TAG) }
 }
 
 /// An axis with the reciprocals of its cells, which are written into `reciprocals`.
@@ -102,7 +76,9 @@ pub unsafe extern "C" fn palpate_table_init(
         let (depth_reciprocals, lateral_reciprocals) = scratch.split_at_mut(depths - 1);
         let depths = axis(depth_knots, depth_reciprocals)?;
         let laterals = axis(lateral_knots, lateral_reciprocals)?;
-        Ok(PreparedTable::new(Table::new(depths, laterals, forces)?))
+        Ok(PreparedTable {
+            kept: Kept::new(TAG, Table::new(depths, laterals, forces)?),
+        })
     };
     unsafe { give(table, make) }
 }

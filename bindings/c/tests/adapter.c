@@ -290,6 +290,40 @@ static json_t *theta_nuisances(void) {
                      found.rates.miss, "rank", (json_int_t)found.rank, "degrees", (json_int_t)found.degrees);
 }
 
+static json_t *sequential_evidence(void) {
+    json_t *r, *t, *others;
+    double alarm, miss;
+    ARGUMENTS("{so so so sF sF}", "residual", &r, "templates", &t, "nuisances", &others, "max_false_alarm", &alarm, "max_miss", &miss);
+    size_t n = length_of(r), signals = length_of(t), count = length_of(others), length = palpate_sequential_memory(signals, count);
+    if (n == 0 || signals == 0) refuse("bad_argument", "no rows, or no templates");
+    if (signals > 1000 || count > 100) refuse("out_of_range", "over 1000 templates or 100 nuisances");
+    const double *residual = numbers(r, n), *templates = rows(t, n), *nuisances = rows(others, n);
+    double *row = take(count + signals, sizeof(double)), *theta = take(signals, sizeof(double)), *gamma = take(signals, sizeof(double));
+    PalpateEvidence *found = take(signals, sizeof *found);
+    PalpatePreparedSequential detector;
+    PalpateSequentialRows all;
+    /* By what is answered: none, or an inclusion. */
+    json_int_t *ends[2] = {take(signals, sizeof **ends), take(signals, sizeof **ends)};
+    check(palpate_sequential_init(signals, count, take(length, sizeof(double)), length, &detector));
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < count; k++) row[k] = nuisances[k * n + i];
+        for (size_t k = 0; k < signals; k++) row[count + k] = templates[k * n + i];
+        check(palpate_sequential_push(&detector, residual[i], row, count, row + count, signals));
+        check(palpate_sequential_evidence(&detector, found, signals));
+        for (size_t k = 0; k < signals; k++) {
+            int8_t decision;
+            theta[k] = found[k].along - found[k].gamma_squared / 2, gamma[k] = sqrt(found[k].gamma_squared);
+            check(palpate_wald(alarm, miss, theta[k], &decision));
+            if (decision != 0 && ends[0][k] + ends[1][k] == 0) ends[decision > 0][k] = (json_int_t)i + 1;
+        }
+    }
+    check(palpate_sequential_rows(&detector, &all));
+    json_t *at[2] = {json_array(), json_array()};
+    for (size_t k = 0; k < 2 * signals; k++) json_array_append_new(at[k % 2], json_integer(ends[k % 2][k / 2]));
+    return json_pack("{so so so so sf sI}", "no_inclusion_at", at[0], "inclusion_at", at[1], "theta", list_of(theta, signals), "gamma",
+                     list_of(gamma, signals), "residual", all.residual, "rank", (json_int_t)all.rank);
+}
+
 static json_t *scan(void) {
     json_t *rx, *ry, *tx, *ty;
     PalpateComponents noise;
@@ -394,7 +428,7 @@ static json_t *report_encode(void) {
 static const struct {
     const char *op;
     json_t *(*function)(void);
-} others[] = {OTHER(roc), OTHER(noise_budget), OTHER(matched_filter), OTHER(theta), OTHER(theta_colored), OTHER(theta_nuisances), OTHER(robust_evidence),
+} others[] = {OTHER(roc), OTHER(noise_budget), OTHER(matched_filter), OTHER(theta), OTHER(theta_colored), OTHER(theta_nuisances), OTHER(sequential_evidence), OTHER(robust_evidence),
               OTHER(scan), OTHER(servo_axis), OTHER(servo_interpolate), OTHER(report_decode), OTHER(report_encode)};
 
 static json_t *plain_op(size_t number) {

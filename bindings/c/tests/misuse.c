@@ -76,6 +76,47 @@ static void records(void) {
     expect("explained", palpate_theta_nuisances(zero, flat, 4, offset, 1, 1, 0, 0, &statistic), PALPATE_ERROR_NO_SIGNAL);
 }
 
+static void rows(void) {
+    double memory[12], one = 1, signal = 2;
+    PalpatePreparedSequential detector = {0};
+    PalpateEvidence evidence = {-7, -7};
+    PalpateSequentialRows all = {-7, 7, 7, 7};
+    int8_t decision = 7;
+    expect_true("memory", palpate_sequential_memory(1, 1) == 15 && palpate_sequential_memory(1, 0) == 8);
+    expect("not made", palpate_sequential_push(&detector, 1, NULL, 0, &signal, 1), PALPATE_ERROR_NOT_INITIALISED);
+    expect("no evidence", palpate_sequential_evidence(&detector, &evidence, 1), PALPATE_ERROR_NOT_INITIALISED);
+    expect("no rows", palpate_sequential_rows(&detector, &all), PALPATE_ERROR_NOT_INITIALISED);
+    expect("a table", palpate_table_force((PalpatePreparedTable *)&detector, 0, 0, NULL), PALPATE_ERROR_NULL_POINTER);
+    expect("null memory", palpate_sequential_init(1, 0, NULL, 8, &detector), PALPATE_ERROR_NULL_POINTER);
+    expect("memory", palpate_sequential_init(1, 0, memory, 9, &detector), PALPATE_ERROR_LENGTH);
+    expect("no hypothesis", palpate_sequential_init(0, 1, memory, 10, &detector), PALPATE_ERROR_EMPTY);
+    expect("within itself", palpate_sequential_init(1, 0, (double *)&detector, 8, &detector), PALPATE_ERROR_OVERLAP);
+    expect("init", palpate_sequential_init(1, 0, memory, 8, &detector), PALPATE_ERROR_OK);
+    PalpateForce force;
+    expect("no table", palpate_table_force((PalpatePreparedTable *)&detector, 0, 0, &force), PALPATE_ERROR_NOT_INITIALISED);
+    expect("push", palpate_sequential_push(&detector, 3, NULL, 0, &signal, 1), PALPATE_ERROR_OK);
+    expect("a row of the memory", palpate_sequential_push(&detector, 3, NULL, 0, memory + 7, 1), PALPATE_ERROR_OVERLAP);
+    expect("a row of the detector", palpate_sequential_push(&detector, 3, NULL, 0, (double *)&detector, 1), PALPATE_ERROR_OVERLAP);
+    expect("another nuisance", palpate_sequential_push(&detector, 3, &one, 1, &signal, 1), PALPATE_ERROR_LENGTH);
+    expect("no signal", palpate_sequential_push(&detector, 3, NULL, 0, NULL, 1), PALPATE_ERROR_NULL_POINTER);
+    expect("infinite", palpate_sequential_push(&detector, INFINITY, NULL, 0, &signal, 1), PALPATE_ERROR_OUT_OF_RANGE);
+    expect("missing", palpate_sequential_push(&detector, NAN, NULL, 0, &signal, 1), PALPATE_ERROR_OK);
+    expect("evidence of two", palpate_sequential_evidence(&detector, &evidence, 2), PALPATE_ERROR_LENGTH);
+    expect("over the memory", palpate_sequential_evidence(&detector, (PalpateEvidence *)(memory + 6), 1), PALPATE_ERROR_OVERLAP);
+    expect_true("a refused call leaves its result", evidence.along == -7 && all.rows == 7);
+    expect("evidence", palpate_sequential_evidence(&detector, &evidence, 1), PALPATE_ERROR_OK);
+    expect("rows", palpate_sequential_rows(&detector, &all), PALPATE_ERROR_OK);
+    /* 2·3 and 2². */
+    expect_true("the evidence", evidence.along == 6 && evidence.gamma_squared == 4);
+    expect_true("the rows", all.residual == 9 && all.rows == 1 && all.missing == 1 && all.rank == 0);
+    expect("rates", palpate_wald(0.5, 0.5, 1, &decision), PALPATE_ERROR_OUT_OF_RANGE);
+    expect("NaN", palpate_wald(0.01, 0.01, NAN, &decision), PALPATE_ERROR_OUT_OF_RANGE);
+    expect_true("a refused test leaves its result", decision == 7);
+    expect_true("it goes on", palpate_wald(0.01, 0.01, 4.6, &decision) == PALPATE_ERROR_OK && decision == 0);
+    expect_true("an inclusion", palpate_wald(0.01, 0.01, 4.61, &decision) == PALPATE_ERROR_OK && decision == 1);
+    expect_true("none", palpate_wald(0.01, 0.01, -4.61, &decision) == PALPATE_ERROR_OK && decision == -1);
+}
+
 static void servo(void) {
     float scratch[2], falling[2] = {0.5f, 0.0f};
     PalpateForce strong[4] = {{0, 0}, {0, 0}, {0, 101}, {0, 0}}, force;
@@ -87,7 +128,7 @@ static void servo(void) {
     expect("scratch", palpate_table_init(knots, 2, knots, 2, forces, scratch, 3, &table), PALPATE_ERROR_LENGTH);
     expect("scratch over knots", palpate_table_init(falling, 2, knots, 2, forces, falling, 2, &table), PALPATE_ERROR_OVERLAP);
     expect("table", palpate_table_init(knots, 2, knots, 2, forces, scratch, 2, &table), PALPATE_ERROR_OK);
-    expect("another table", palpate_table_force(&other, 0.1f, 0.0f, &force), PALPATE_ERROR_NOT_A_TABLE);
+    expect("another table", palpate_table_force(&other, 0.1f, 0.0f, &force), PALPATE_ERROR_NOT_INITIALISED);
 
     /* A force is played, then a call is refused: its command is none, and the state stays. */
     PalpateServoState state = {0}, before;
@@ -141,6 +182,7 @@ static void reports(void) {
 int main(void) {
     numbers();
     records();
+    rows();
     servo();
     reports();
     printf("misuse: %d failures\n", failures);

@@ -51,6 +51,7 @@ pub struct Sequential<M> {
 }
 
 /// What the rows so far say of one hypothesis.
+#[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Evidence {
     /// (Pδ)ᵀz.

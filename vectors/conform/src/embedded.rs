@@ -13,6 +13,6 @@ pub(super) const FILES: &[(&str, &str)] = files! {
     bank_posterior chi_square_tail count_analysis element_stiffness error_rates f_tail
     gamma_from_two_afc interpolate manifest matched_filter noise_budget normal_cdf normal_quantile
     probe_force proportion_interval report_decode report_encode requests required_gamma
-    robust_evidence roc scan schema servo_axis servo_interpolate student_tail theta theta_colored
+    robust_evidence roc scan schema sequential_evidence servo_axis servo_interpolate student_tail theta theta_colored
     theta_nuisances threshold two_afc
 };

@@ -34,6 +34,7 @@ mod generator;
 mod ledger;
 mod nuisance;
 mod robust;
+mod sequential;
 
 use crate::Figure;
 pub use ledger::Row;
@@ -93,6 +94,7 @@ pub fn battery() -> impl Iterator<Item = &'static Check> {
         nuisance::CHECKS,
         bank::CHECKS,
         robust::CHECKS,
+        sequential::CHECKS,
     ]
     .into_iter()
     .flatten()

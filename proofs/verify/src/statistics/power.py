@@ -401,3 +401,42 @@ for kind, defects in [
     ("signals", ["noise_from_the_misfit", "amplitude_fixed", "one_mode_short"]),
 ]:
     line(f"robust_posterior_of_{kind}", TRIALS, **{defect: odds_power(kind, defect) for defect in defects})
+
+# Wald's test row by row: the density of theta while the test goes on, at Gauss' nodes between the bounds, and what leaves them.
+signal, force, rate = np.array([0.3, 0.9]), np.array([-1.5, 1.5]), 0.05
+nodes, gauss = np.polynomial.legendre.leggauss(600)
+
+
+def answered(inclusion, rows, defect="", decides_at_end=False):
+    """Pr(inclusion answered) and Pr(none answered)."""
+    lower, upper, gamma2, rates, at, mass = math.log(rate), -math.log(rate), 0.0, np.zeros(2), np.zeros(1), np.ones(1)
+    for row in range(rows):
+        used, there = signal[row % 2], signal[row % 2] * inclusion
+        if defect == "depth_taken_as_constant":
+            used, there = 0.6, there + force[row % 2]
+        gamma2 += used * used
+        mean = used * there - used * used * (1 if defect == "half_left_out" else 0.5)
+        low, high = lower, upper
+        if defect == "fixed_test_at_each_row":
+            low, high = -60, norm.isf(rate) * math.sqrt(gamma2) - gamma2 / 2
+        rates += [np.sum(mass * norm.sf(high, at + mean, used)), np.sum(mass * norm.cdf(low, at + mean, used))]
+        low = max(low, np.min(at) + mean - 9 * used)
+        next_at = low + (high - low) * (nodes + 1) / 2
+        mass = norm.pdf(next_at[:, None], at + mean, used) @ mass * gauss * (high - low) / 2
+        at = next_at
+    if decides_at_end:
+        rates += [np.sum(mass[at >= 0]), np.sum(mass[at < 0])]
+    return rates
+
+
+ALPHA, TRIALS = 1e-8, 20_000
+SHORT = dict(rows=8, decides_at_end=True)
+laws_of = {
+    "sequential_false_alarms": (dict(inclusion=0, rows=40), 0, ["fixed_test_at_each_row", "half_left_out", "depth_taken_as_constant"]),
+    "sequential_misses": (dict(inclusion=1, rows=40), 1, ["half_left_out", "depth_taken_as_constant"]),
+    "sequential_false_alarms_of_a_short_record": (dict(inclusion=0, **SHORT), 0, ["truncation_forgotten", "half_left_out"]),
+}
+for name, (law_of, wrong, defects) in laws_of.items():
+    right = answered(**law_of)[wrong]  # in sequential.rs
+    of = lambda defect: answered(**{**law_of, "decides_at_end": False} if defect == "truncation_forgotten" else law_of, defect=defect)[wrong]
+    line(name, TRIALS, **{defect: count_power(right, of(defect), TRIALS) for defect in defects})

@@ -3,7 +3,7 @@
 use super::locate::{SD, USUAL, all, record, search};
 use super::*;
 use crate::detect::Decision;
-use crate::detect::sequential::Wald;
+use crate::detect::sequential::{Evidence, Wald};
 use crate::stats::binomial::clopper_pearson;
 use crate::trace::{Cause, Criterion, Record, Unknown};
 
@@ -147,6 +147,61 @@ fn a_path_that_ends_early_leaves_open_what_it_has_not_covered() {
         (half.decision, half.places),
         (Some(Decision::NoInclusion), 2)
     );
+}
+
+// A record of which θ is below ln β at a place of which the path has told little: −6 − γ²/2 and noise of γ below −3, with γ² below 6.
+// Verifies: SEQ-021.
+#[test]
+fn a_place_that_the_path_has_not_covered_is_not_excluded_by_chance() {
+    let (bank, question) = (all(), question(&[]));
+    let gel = samples(&record(&reference(), Some(8), 0.0, 1.0));
+    let (place, end) = (0..40)
+        .flat_map(|place| (1..61).map(move |end| (place, end)))
+        .find(|&(place, end)| {
+            let watcher = watched(&question, gel[..end].iter().copied());
+            let evidence = watcher.found.evidence().nth(place);
+            end > 20 && evidence.is_some_and(|of| (2.0..5.0).contains(&of.gamma_squared))
+        })
+        .unwrap();
+    let evidence = |samples: &[Sample]| {
+        let watcher = watched(&question, samples.iter().copied());
+        let found = watcher.found.evidence().nth(place).unwrap();
+        (found, watcher.answer().unwrap())
+    };
+    let (before, _) = evidence(&gel[..end]);
+    let difference = |x: f64| {
+        let force = |map: &ForceMap| map.table().sweep(4e-3, &[x]).unwrap();
+        let (with, without) = (force(&bank.maps()[place]), force(bank.reference()));
+        [
+            with.lateral[0] - without.lateral[0],
+            with.normal[0] - without.normal[0],
+        ]
+    };
+    let times = -6.0 / before.gamma_squared;
+    let drawn: Vec<Sample> = gel[..end]
+        .iter()
+        .map(|&(x, lateral, normal)| {
+            let [of_lateral, of_normal] = difference(x);
+            (
+                x,
+                lateral.map(|force| force + times * of_lateral),
+                normal + times * of_normal,
+            )
+        })
+        .collect();
+    let (found, answer) = evidence(&drawn);
+    assert!(
+        found.theta() < TEST[1].ln() && answer.causes.is_empty(),
+        "{found:?} {answer:?}"
+    );
+    let position = bank.point(place)[0];
+    assert!(answer.open_positions_m.contains(&position));
+    // Only the places of which it has told enough.
+    let bound = TEST[1].ln();
+    let watcher = watched(&question, drawn);
+    let is_excluded = |of: &Evidence| of.theta() <= bound && of.gamma_squared >= -2.0 * bound;
+    let excluded = watcher.found.evidence().filter(is_excluded);
+    assert_eq!(answer.excluded, excluded.count());
 }
 
 // Verifies: SEQ-020, SEQ-022.

@@ -12,6 +12,7 @@ mod interpolation;
 mod nuisance;
 mod probe;
 mod robust;
+mod sequential;
 mod servo;
 
 use super::answer::{Code, Refused, answer, json};
@@ -77,6 +78,9 @@ pub const OPS: &[Op] = &[
         prior: List<f64>, shape: Rows
     } => robust::evidence_of(
         [record.0, noise.0], (&weights.0, &covariances), (&signals, &sizes.0, &prior.0), &shape)?),
+    op!("sequential_evidence", {
+        residual: List<f64>, templates: Rows, nuisances: Rows, max_false_alarm: f64, max_miss: f64
+    } => sequential::sequential(&residual.0, &templates, &nuisances, [max_false_alarm, max_miss])?),
     op!("threshold", text => answer! { eta: decision::threshold(text)? }),
     op!("error_rates", { gamma: f64, eta: f64 } => detect::error_rates(gamma, eta)?),
     op!("roc", { gamma: f64, false_alarm: List<f64> } => decision::roc(gamma, &false_alarm.0)?),

@@ -122,7 +122,7 @@ fn level_of(word: &str) -> Result<NoiseLevel, Refused> {
 }
 
 /// Nuisances of `samples` numbers each, one after the other.
-fn signals(nuisances: &Rows, samples: usize) -> Result<Vec<f64>, Refused> {
+pub fn signals(nuisances: &Rows, samples: usize) -> Result<Vec<f64>, Refused> {
     let number = nuisances.0.len();
     if number > MOST_NUISANCES {
         let wrong = format_args!("nuisances are {number}, but may be at most {MOST_NUISANCES}");
