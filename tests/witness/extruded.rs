@@ -1,7 +1,8 @@
 //! A CalculiX input deck of the gel in three dimensions: our mesh of the section, drawn out along z into wedges with 15 nodes.
 //!
-//! The probe stands at x = 0. The planes x = 0 and z = 0 are planes of symmetry, and a deck holds the quarter where both are positive. CalculiX's `*GREEN` then
-//! gives the displacements under a unit force at each place that the probe may touch, from one factorisation.
+//! The plane z = 0 is one of symmetry, and where the probe stands at x = 0, so is the plane x = 0; a deck holds the part where z, and
+//! then x, is positive. CalculiX's `*GREEN` gives the displacements under a unit force at each place that the probe may touch, from one
+//! factorisation.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -22,10 +23,12 @@ pub enum Ends {
     Plane,
 }
 
-/// A quarter of a gel.
-pub struct Quarter<'a> {
+/// A half of a gel, or a quarter where the probe stands at x = 0.
+pub struct Part<'a> {
     /// What is symmetric about x = 0.
     pub phantom: &'a Phantom,
+    /// Where the probe stands, m.
+    pub lateral: f64,
     /// The section.
     pub mesh: &'a Mesh,
     /// Where along z, m, it is cut into wedges, from its middle to its end.
@@ -42,7 +45,7 @@ pub struct Place {
     pub x: f64,
 }
 
-impl Quarter<'_> {
+impl Part<'_> {
     /// The deck, which prints the displacements of the `places` under each of the `loads`, 1 N at a place along x (0) or y (1).
     pub fn deck(&self, places: &[Place], loads: &[(usize, usize)]) -> String {
         let mut deck = String::from("*NODE, NSET=ALL\n");
@@ -65,13 +68,18 @@ impl Quarter<'_> {
         deck
     }
 
+    /// How many such parts make up the gel.
+    pub fn of_the_gel(&self) -> f64 {
+        if self.lateral == 0.0 { 4.0 } else { 2.0 }
+    }
+
     /// Where the probe may touch: the nodes at the surface up to `reach`, m, from its axis and below its length.
     pub fn places(&self, reach: f64) -> Vec<Place> {
         let place = |(node, level): (u32, usize)| {
             let ([x, y], z) = (self.mesh.nodes[node as usize], self.z(level));
             let number = self.node(node, level);
             let below = self.ends == Ends::Plane || z <= self.end() + 1e-9;
-            (y == 0.0 && x <= reach && below).then_some(Place { number, x })
+            (y == 0.0 && (x - self.lateral).abs() <= reach && below).then_some(Place { number, x })
         };
         self.nodes().into_iter().filter_map(place).collect()
     }
@@ -85,11 +93,20 @@ impl Quarter<'_> {
         (self.cuts[level / 2] + self.cuts[level.div_ceil(2)]) / 2.0
     }
 
-    /// Each element of the right half of the section, in each slice: its number, its region, its nodes in the section, the slice.
+    /// Each element of the section's part, in each slice: its number, its region, its nodes in the section, the slice.
     fn wedges(&self) -> impl Iterator<Item = (usize, Region, &[u32], usize)> {
-        let right = |nodes: &[u32]| nodes.iter().all(|&n| self.mesh.nodes[n as usize][0] >= 0.0);
+        let least = if self.lateral == 0.0 {
+            0.0
+        } else {
+            f64::NEG_INFINITY
+        };
+        let inside = move |nodes: &[u32]| {
+            nodes
+                .iter()
+                .all(|&n| self.mesh.nodes[n as usize][0] >= least)
+        };
         let section = self.mesh.elements().enumerate();
-        let section = section.filter(move |(_, nodes)| right(nodes));
+        let section = section.filter(move |(_, nodes)| inside(nodes));
         section.flat_map(move |(element, nodes)| {
             (0..self.cuts.len() - 1).map(move |slice| {
                 let number = 1 + element + self.mesh.regions.len() * slice;
@@ -165,7 +182,7 @@ impl Quarter<'_> {
                 writeln!(deck, "{number}, 1, 3").unwrap();
                 continue;
             }
-            if self.mesh.nodes[node as usize][0] == 0.0 {
+            if self.lateral == 0.0 && self.mesh.nodes[node as usize][0] == 0.0 {
                 writeln!(deck, "{number}, 1, 1").unwrap();
             }
             if level == 0 || self.ends == Ends::Plane {
