@@ -246,7 +246,7 @@ fn the_plane_is_as_wrong_as_the_table_says() {
 ///
 /// Verifies: FEM-083.
 #[test]
-#[ignore = "slow, half an hour"]
+#[ignore = "slow, a quarter of an hour"]
 fn the_plane_is_as_wrong_beside_the_inclusion_as_the_table_says() {
     compare_with_the_table(5e-3);
 }
