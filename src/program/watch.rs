@@ -16,7 +16,7 @@ use super::error::refuse;
 use super::layout::LayoutArguments;
 use super::numbers::probability;
 use super::output::{Envelope, printed};
-use super::play::stop_on_signals;
+use super::platform::stop_on_signals;
 use palpate::bank::{Bank, WatchAnswer, WatchQuestion, Watcher};
 use palpate::detect::sequential::Wald;
 use palpate::detect::{Decision, required_gamma};
