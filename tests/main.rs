@@ -17,6 +17,7 @@ mod docs;
 mod finite_strain;
 mod force_map_csv;
 mod force_map_json;
+mod help;
 mod oracle_command;
 mod phantom_file;
 mod playback_command;

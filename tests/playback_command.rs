@@ -131,7 +131,7 @@ fn a_budget_that_is_broken_is_a_failed_check() {
     let output = here.run("timing --cycles 3000 --budget-us 1 --paced");
     assert_eq!(output.status.code(), Some(1));
     let said: Vec<&str> = text(&output.stderr).lines().collect();
-    assert_eq!(said[0], "palpate: measuring 3000 cycles takes 3 s");
+    assert_eq!(said[0], "palpate: note: measuring 3000 cycles takes 3 s");
     assert!(said[1].starts_with("palpate: timing: "), "{said:?}");
     assert!(said[1].ends_with("µs; the budget is 1 µs"), "{said:?}");
 }

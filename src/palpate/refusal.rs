@@ -138,3 +138,15 @@ pub fn one_line(text: &str) -> String {
 pub fn shortened(text: &str) -> String {
     text.chars().take(80).collect()
 }
+
+/// Which of `names` is similar to `word`, in words for the end of a message; nothing if none is.
+///
+/// Implements: CLI-222.
+pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+    let alike = |name| (strsim::jaro(word, name), name);
+    let nearest = names.into_iter().map(alike);
+    match nearest.max_by(|(one, _), (other, _)| one.total_cmp(other)) {
+        Some((similarity, name)) if similarity > 0.7 => format!(" (did you mean {name}?)"),
+        _ => String::new(),
+    }
+}

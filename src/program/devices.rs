@@ -62,7 +62,7 @@ fn as_json(one: &Listed) -> Value {
             Some(_) if is_denied => "no permission".into(),
             Some(error) => error.to_string(),
         },
-        "udev_rule": is_denied.then(|| udev_rule(identity)),
+        "udev_rule": (is_denied && cfg!(target_os = "linux")).then(|| udev_rule(identity)),
     })
 }
 

@@ -1,7 +1,7 @@
 //! The program `palpate` (`spec/command-line.md`).
 //!
 //! Read `arguments.rs` first, which lists the commands, then `output.rs` (formats of answers, files) and `error.rs` (messages, exit codes).
-//! Each command has a file or a folder of its name, in all 4,600 lines of code.
+//! Each command has a file or a folder of its name, in all 4,800 lines of code.
 //!
 //! Only the project's own programs and tests use this crate as a library.
 
@@ -17,9 +17,11 @@ mod error;
 mod experiment;
 mod import;
 mod layout;
+mod manual;
 pub mod numbers;
 mod oracle;
 pub mod output;
+mod platform;
 mod play;
 mod playback;
 pub mod progress;
@@ -56,6 +58,7 @@ use output::Format;
 /// ```
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     program(arguments, |arguments: CommandLine| {
+        output::be_quiet(arguments.quiet);
         match arguments.command {
             Command::Run(arguments) => run::run(&arguments),
             Command::Demo(arguments) => demo::demo(&arguments),
@@ -73,12 +76,14 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Psychophysics(arguments) => psychophysics::psychophysics(&arguments),
             Command::Timing(arguments) => timing::timing(&arguments),
             Command::Oracle(arguments) => oracle::oracle(&arguments),
+            Command::Completions(arguments) => manual::completions(&arguments),
+            Command::Man(arguments) => manual::man(&arguments),
         }
     })
 }
 
 /// The commands and arguments of `palpate`, for completions and manual pages.
-pub fn command() -> clap::Command {
+fn command() -> clap::Command {
     <CommandLine as clap::CommandFactory>::command()
 }
 

@@ -11,7 +11,7 @@ use palpate::oracle::serve;
 /// Arguments of `palpate oracle`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Example: echo '{\"id\":1,\"op\":\"error_rates\",\"args\":{\"gamma\":2,\"eta\":0}}' | palpate oracle\n\
+    after_help = "Example:\n  echo '{\"id\":1,\"op\":\"error_rates\",\"args\":{\"gamma\":2,\"eta\":0}}' | palpate oracle\n\
     '{\"id\":1,\"op\":\"capabilities\"}' asks for the names of the ops; spec/oracle.md describes them."
 )]
 pub struct OracleArguments {}

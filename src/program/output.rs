@@ -1,13 +1,18 @@
 //! Standard output and files.
 
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::fs::File;
 use std::hash::{BuildHasher, Hasher, RandomState};
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
+use anstream::{AutoStream, ColorChoice};
+use anstyle::AnsiColor;
 use clap::ValueEnum;
 use serde::Serialize;
+use serde_json::Value;
 
 use super::CliError;
 use palpate::refusal::one_line;
@@ -19,6 +24,8 @@ pub enum Format {
     Table,
     /// For programs; keys carry the unit.
     Json,
+    /// For spreadsheets: a line for each value, its key and itself.
+    Csv,
 }
 
 impl Format {
@@ -32,7 +39,41 @@ impl Format {
             Format::Table => table(),
             // Keys are strings, and nothing else could fail.
             Format::Json => serde_json::to_string_pretty(answer).unwrap_or_default() + "\n",
+            Format::Csv => {
+                let mut lines = "key,value\n".to_string();
+                let answer = serde_json::to_value(answer).unwrap_or_default();
+                add_lines("", &answer, &mut lines);
+                lines
+            }
         })
+    }
+}
+
+/// Adds a line for each value of an answer; `key` leads to it.
+///
+/// Implements: CLI-226.
+fn add_lines(key: &str, value: &Value, lines: &mut String) {
+    match value {
+        Value::Object(parts) => parts.iter().for_each(|(name, value)| {
+            let point = if key.is_empty() { "" } else { "." };
+            add_lines(&format!("{key}{point}{name}"), value, lines);
+        }),
+        Value::Array(parts) => parts
+            .iter()
+            .enumerate()
+            .for_each(|(at, value)| add_lines(&format!("{key}[{at}]"), value, lines)),
+        Value::Null => *lines += &format!("{},\n", quoted(key)),
+        Value::String(text) => *lines += &format!("{},{}\n", quoted(key), quoted(text)),
+        number => *lines += &format!("{},{number}\n", quoted(key)),
+    }
+}
+
+/// A field of CSV, in quotes where it needs them.
+pub(super) fn quoted(field: &str) -> Cow<'_, str> {
+    if field.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\"")).into()
+    } else {
+        field.into()
     }
 }
 
@@ -77,9 +118,55 @@ pub(super) fn printed(written: std::io::Result<()>) -> Result<(), CliError> {
     }
 }
 
+/// Whether notes and progress are left out.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Leaves out notes and progress from now on, if `quiet`.
+///
+/// Implements: CLI-224.
+pub(super) fn be_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+/// Whether progress is shown: on a terminal, if nobody asked for quiet.
+///
+/// Implements: CLI-006, CLI-224.
+pub(super) fn shows_progress() -> bool {
+    !QUIET.load(Ordering::Relaxed) && std::io::stderr().is_terminal()
+}
+
+/// Prints a note to standard error.
+///
+/// Implements: CLI-224.
+pub(super) fn tell(text: &str) {
+    if !QUIET.load(Ordering::Relaxed) {
+        eprintln!("palpate: note: {}", one_line(text));
+    }
+}
+
 /// Prints a note about a file to standard error.
 pub fn note(file: impl Display, text: &str) {
-    eprintln!("palpate: note: {}", one_line(&format!("{file}: {text}")));
+    tell(&format!("{file}: {text}"));
+}
+
+/// `text` in colour, if standard output is a terminal that shows it.
+///
+/// Implements: CLI-225.
+pub(super) fn marked(text: &str, color: AnsiColor) -> String {
+    let mark = color.on_default().bold();
+    // It also asks a Windows console for colours.
+    match AutoStream::auto(std::io::stdout()).current_choice() {
+        ColorChoice::Never => text.into(),
+        _ => format!("{mark}{text}{mark:#}"),
+    }
+}
+
+/// Prints a warning to standard error.
+///
+/// Implements: CLI-225.
+pub(super) fn warn(text: &str) {
+    let marked = AnsiColor::Yellow.on_default().bold();
+    anstream::eprintln!("palpate: {marked}warning{marked:#}: {}", one_line(text));
 }
 
 /// Writes a file atomically: if the program is stopped, the file is either new and whole or as it was.

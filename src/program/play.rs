@@ -1,10 +1,8 @@
 //! `palpate play`: a force map rendered on a haptic device (`spec/command-line.md`).
 
 use std::fmt::Display;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use askama::Template;
@@ -12,7 +10,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::error::refuse;
-use super::output::{print, read, write};
+use super::output::{print, read, shows_progress, tell, write};
+use super::platform::{PROMISE, raise_priority, stop_on_signals};
 use super::playback::{DeviceArguments, limits, loaded_map};
 use super::{CliError, Format};
 use palpate::force_map::ForceMap;
@@ -55,7 +54,7 @@ pub struct PlayArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, HID-094.
+/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, HID-094, HID-101.
 pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
     if let Some(file) = &arguments.replay {
         return replay(arguments, file);
@@ -110,13 +109,16 @@ fn session(
         record: recorded_cycles(arguments, &capabilities, duration)?,
     };
     let stop = stop_on_signals()?;
+    let is_simulated = arguments.device.is_simulated();
+    if !is_simulated {
+        tell(PROMISE);
+    }
     let session = Session::begin(device, loaded.table(), limits).map_err(failed)?;
     let stop = || stop.load(Ordering::Relaxed);
     // A virtual clock stands still with the loop: nothing is held up, and no cycle takes time.
-    let is_simulated = arguments.device.is_simulated();
     let look = live(!is_simulated);
     let played = supervised(session, &options, raise_priority, stop, look);
-    if std::io::stderr().is_terminal() {
+    if shows_progress() {
         eprint!("\r\x1b[K"); // the summary begins on an empty line
     }
     let panicked = "the servo thread panicked; the device was told to stop";
@@ -162,46 +164,9 @@ fn recorded_cycles(
     }
 }
 
-/// A flag that Ctrl-C, SIGTERM or SIGHUP sets; a second signal ends the program at once, and leaves the force to the device's watchdog.
-pub(super) fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM, SIGHUP] {
-        let hook = signal_hook::flag::register_conditional_shutdown(signal, 130, stop.clone())
-            .and_then(|_| signal_hook::flag::register(signal, stop.clone()));
-        hook.map_err(|error| failed(format_args!("signal {signal}: {error}")))?;
-    }
-    Ok(stop)
-}
-
-/// Requests real-time priority and locked memory; prints a note where the system refuses.
-///
-/// Implements: HID-055.
-fn raise_priority() {
-    use rustix::mm::{MlockAllFlags, mlockall};
-    use thread_priority::{
-        RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
-        set_thread_priority_and_policy, thread_native_id,
-    };
-    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    let priority = 80u8.try_into().map(ThreadPriority::Crossplatform);
-    let raised = priority.is_ok_and(|priority| {
-        set_thread_priority_and_policy(thread_native_id(), priority, policy).is_ok()
-    });
-    let locked = mlockall(MlockAllFlags::CURRENT | MlockAllFlags::FUTURE).is_ok();
-    if !raised {
-        eprintln!(
-            "palpate: note: no real-time priority (SCHED_FIFO): the system may wake the loop late"
-        );
-    }
-    if !locked {
-        eprintln!("palpate: note: memory is not locked: a page fault may delay a cycle");
-    }
-}
-
 /// What the supervisor shows while it plays: the counters on one line of a terminal and, of a loop on the `wall_clock`, that it stalls.
 fn live(wall_clock: bool) -> impl FnMut(&Counters, Duration) {
-    let terminal = std::io::stderr().is_terminal();
+    let terminal = shows_progress();
     let mut told = false;
     move |counters, silent| {
         if wall_clock && silent > HELD_UP && !told {

@@ -1,11 +1,10 @@
 //! What is told of long work.
 
-use std::io::IsTerminal;
 use std::path::Path;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use super::output::note;
+use super::output::{note, shows_progress, tell};
 use palpate::fem::{FemError, Mesh};
 use palpate::phantom::{Phantom, Strain};
 
@@ -18,10 +17,10 @@ const MANY_NODES: f64 = 50_000.0;
 pub fn tell_large_mesh(phantom: &Phantom, size: f64) -> Result<(), FemError> {
     let nodes = Mesh::expected_nodes(phantom, size)?;
     if nodes > MANY_NODES {
-        eprintln!(
-            "palpate: note: phantom {}: a mesh of about {nodes:.0} nodes, where the paper's phantoms have 10000: a pose may take minutes",
+        tell(&format!(
+            "phantom {}: a mesh of about {nodes:.0} nodes, where the paper's phantoms have 10000: a pose may take minutes",
             phantom.name()
-        );
+        ));
     }
     Ok(())
 }
@@ -39,9 +38,9 @@ pub fn tell_time(phantom: &Phantom, size: f64, [maps, poses]: [usize; 2]) -> Res
             0.0..120.0 => format!("{seconds:.1} s"),
             _ => format!("{:.0} minutes", seconds / 60.0),
         };
-        eprintln!(
-            "palpate: note: {maps} maps of {poses} poses at finite strain take some {time} of processor time"
-        );
+        tell(&format!(
+            "{maps} maps of {poses} poses at finite strain take some {time} of processor time"
+        ));
     }
     Ok(())
 }
@@ -62,12 +61,12 @@ pub fn resumed_bar(file: &Path, done: usize, total: usize, what: &str) -> Progre
 /// A bar on standard error that counts `total` pieces of `what`; hidden where standard error is no
 /// terminal.
 ///
-/// Implements: CLI-006.
+/// Implements: CLI-006, CLI-224.
 pub fn bar(total: usize, what: &str) -> ProgressBar {
     // The template is a constant: a mistake in it would show in every run.
     let style = ProgressStyle::with_template("{msg} [{bar:30}] {pos}/{len} {eta}");
     let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
-    let target = if std::io::stderr().is_terminal() {
+    let target = if shows_progress() {
         ProgressDrawTarget::stderr()
     } else {
         ProgressDrawTarget::hidden()

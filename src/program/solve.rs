@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use super::CliError;
 use super::error::refuse;
 use super::numbers::{List, contact, friction, length, positions};
-use super::output::{print, write};
+use super::output::{print, warn, write};
 use super::progress::{bar, tell_large_mesh};
 use palpate::decimal::{format_scaled, mm};
 use palpate::fem::certify::certified_map;
@@ -255,7 +255,9 @@ fn tell_smallest_det(
         )));
     }
     if det < SMALL_STRAIN_LIMIT && is_small_strain {
-        eprintln!("palpate: warning: {found}: the small-strain model is at its limit there");
+        warn(&format!(
+            "{found}: the small-strain model is at its limit there"
+        ));
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use askama::Template;
 use clap::{Args, ValueEnum};
 
-use super::output::print;
+use super::output::{self, print};
 use super::playback::{limits, loaded_map};
 use super::{CliError, Format};
 use palpate::file;
@@ -54,6 +54,8 @@ enum Printed {
     Table,
     /// For programs; keys carry the unit.
     Json,
+    /// For spreadsheets: a line for each value, its key and itself.
+    Csv,
     /// For CI: JUnit XML.
     Junit,
 }
@@ -99,7 +101,7 @@ fn measured(arguments: &TimingArguments, budget: Budget) -> Result<Timing, CliEr
     let period = arguments.paced.then(|| PAPER.period());
     if let Some(period) = period {
         let seconds = cycles as f64 * period.as_secs_f64();
-        eprintln!("palpate: measuring {cycles} cycles takes {seconds:.0} s");
+        output::tell(&format!("measuring {cycles} cycles takes {seconds:.0} s"));
     }
     Ok(measure(device, table, limits, cycles, budget, period)?)
 }
@@ -127,8 +129,8 @@ fn tell(
     let text = text.render().unwrap_or_default();
     match (arguments.format, timing) {
         (Printed::Table, _) => print(&text),
-        (Printed::Json, Some(timing)) => Format::Json.print(timing, String::new),
-        (Printed::Json, None) => Format::Json.print(judged, String::new),
+        (Printed::Json, timing) => print_values(Format::Json, judged, timing),
+        (Printed::Csv, timing) => print_values(Format::Csv, judged, timing),
         (Printed::Junit, _) => {
             let reason = failure.as_ref().map(CliError::to_string);
             let junit = Junit {
@@ -141,6 +143,14 @@ fn tell(
         }
     }?;
     failure.map_or(Ok(()), Err)
+}
+
+/// Prints all that was measured here, or else what was judged, for programs.
+fn print_values(format: Format, judged: &Judged, timing: Option<&Timing>) -> Result<(), CliError> {
+    match timing {
+        Some(timing) => format.print(timing, String::new),
+        None => format.print(judged, String::new),
+    }
 }
 
 /// Why a budget is not kept.

@@ -16,7 +16,7 @@ use super::error::refuse;
 use super::layout::LayoutArguments;
 use super::numbers::probability;
 use super::output::{Envelope, printed};
-use super::play::stop_on_signals;
+use super::platform::stop_on_signals;
 use palpate::bank::{Bank, WatchAnswer, WatchQuestion, Watcher};
 use palpate::detect::sequential::Wald;
 use palpate::detect::{Decision, required_gamma};
@@ -32,7 +32,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// Arguments of `palpate watch`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Example: palpate watch --bank bank.json --noise-sd-n 0.1 < sweep.csv | tail -1\n\
+    after_help = "Example:\n  palpate watch --bank bank.json --noise-sd-n 0.1 < sweep.csv | tail -1\n\
     Samples come on standard input, a line each: CSV with the header position_mm,lateral_force_n,normal_force_n, or JSON objects with\n\
     these keys. Answers are lines of JSON. Exit code 0: answered; 3: undecided when the input ended."
 )]

@@ -20,7 +20,7 @@ pub use json::{check_schema, from_json, to_json};
 pub(crate) use toml::Tree;
 pub use toml::from_toml;
 
-use crate::refusal::Refusal;
+use crate::refusal::{Refusal, did_you_mean};
 
 /// The longest text that is read, bytes: more than an hour of playback, recorded.
 const LONGEST: u64 = 256 << 20;
@@ -29,9 +29,15 @@ const LONGEST: u64 = 256 << 20;
 ///
 /// Implements: CLI-008.
 pub fn text(path: &Path) -> io::Result<String> {
+    text_of(File::open(path)?)
+}
+
+/// The text of an open file, or of standard input, as [`text`].
+///
+/// Implements: CLI-008.
+pub fn text_of(file: impl Read) -> io::Result<String> {
     let mut text = String::new();
-    let mut file = File::open(path)?.take(LONGEST + 1);
-    let length = file.read_to_string(&mut text)?;
+    let length = file.take(LONGEST + 1).read_to_string(&mut text)?;
     if length as u64 > LONGEST {
         let message = format!("it is longer than {} MiB", LONGEST >> 20);
         return Err(Error::new(ErrorKind::InvalidData, message));
@@ -84,7 +90,11 @@ fn refusal(path: &KeyPath, message: &str) -> Refusal {
     match found.split_once('`') {
         Some(("missing field ", name)) => Refusal::state(inner(name) + " is missing", ""),
         Some(("duplicate field ", name)) => Refusal::state(inner(name) + " is there twice", ""),
-        Some(("unknown field ", _)) => Refusal::state(format!("{key} is unknown"), give),
+        Some(("unknown field ", _)) => {
+            let name = key.rsplit('.').next().unwrap_or_default();
+            let similar = did_you_mean(name, expected.split('`').skip(1).step_by(2));
+            Refusal::state(format!("{key} is unknown{similar}"), give)
+        }
         Some(("unknown variant ", word)) => Refusal::value(key, format!("`{word}"), expected),
         _ if key.is_empty() => Refusal::state(found, give),
         _ if found.starts_with("has ") => Refusal::state(format!("{key} {found}"), give),

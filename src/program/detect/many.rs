@@ -12,7 +12,7 @@ use serde_json::Value;
 
 use super::arguments::AnswerFormat;
 use super::robust::{Asked, Detector, tell_glitches};
-use crate::output::{Envelope, note, print};
+use crate::output::{Envelope, note, print, quoted};
 use crate::progress::bar;
 use crate::{CliError, error::refuse};
 
@@ -157,7 +157,12 @@ fn tell(format: AnswerFormat, answers: Vec<Answer>) -> Result<(), CliError> {
     let lines: String = match format {
         AnswerFormat::Table => table(&answers),
         AnswerFormat::Csv => {
-            let line = |answer| COLUMNS.map(|key| quoted(&field(answer, key))).join(",") + "\n";
+            let line = |answer| {
+                COLUMNS
+                    .map(|key| quoted(&field(answer, key)).into_owned())
+                    .join(",")
+                    + "\n"
+            };
             let header = COLUMNS.join(",") + "\n";
             header + &answers.iter().map(line).collect::<String>()
         }
@@ -236,14 +241,5 @@ fn text(value: Option<&Value>) -> String {
             list.join(";")
         }
         Some(value) => value.to_string(),
-    }
-}
-
-/// A field of CSV, in quotes where it needs them.
-fn quoted(field: &str) -> String {
-    if field.contains([',', '"', '\n']) {
-        format!("\"{}\"", field.replace('"', "\"\""))
-    } else {
-        field.into()
     }
 }

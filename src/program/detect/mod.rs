@@ -7,11 +7,12 @@ mod robust;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
+use anstyle::AnsiColor;
 use serde_json::json;
 
 use super::CliError;
 use super::error::refuse;
-use super::output::{Envelope, note, write};
+use super::output::{Envelope, marked, note, warn, write};
 pub use arguments::DetectArguments;
 use arguments::{Known, ModelName};
 use palpate::bank::{Bank, BankSearch};
@@ -19,7 +20,6 @@ use palpate::chart::place_figure;
 use palpate::csv::Layout;
 use palpate::detect::Decision;
 use palpate::force_map::{ForceMap, ForceTable, Hypotheses};
-use palpate::refusal::one_line;
 use palpate::rows::Rows;
 use palpate::trace::{
     Cause, Fit, Motion, Noise, Question, Record, Trace, Unknown, in_words, reasons,
@@ -51,7 +51,7 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
 /// Implements: CLI-175.
 fn read(arguments: &DetectArguments, layout: &Layout, path: &Path) -> Result<Noted, CliError> {
     let trace = if path == Path::new("-") {
-        let text = palpate::file::text(Path::new("/dev/stdin"));
+        let text = palpate::file::text_of(std::io::stdin());
         let text = text.map_err(CliError::file("read", Path::new("standard input")))?;
         Trace::from_csv_as(&text, "-", layout)?
     } else {
@@ -266,7 +266,7 @@ fn exactly_asked(arguments: &DetectArguments, known: &Known, depth: f64, record:
     rows
 }
 
-/// Prints the answer, and after a table what it means in `words`; fails with the causes if there is no decision.
+/// Prints the answer, in a table after what it means in `words`; fails with the causes if there is no decision.
 ///
 /// Implements: CLI-045, CLI-043, CLI-003.
 fn tell(
@@ -275,7 +275,7 @@ fn tell(
     words: &str,
     rows: Rows,
 ) -> Result<(), CliError> {
-    let table = format!("{}\n{words}\n", rows.table());
+    let table = format!("{}\n\n{}", with_mark(decision, words), rows.table());
     let answer = Envelope::new("palpate-detection", 4, rows);
     arguments.format.of_one().print(&answer, || table)?;
     if decision.is_none() {
@@ -284,6 +284,19 @@ fn tell(
         return Err(CliError::Unjudged(message));
     }
     Ok(())
+}
+
+/// The words with their decision in colour, where a terminal shows it.
+///
+/// Implements: CLI-225.
+fn with_mark(decision: Option<Decision>, words: &str) -> String {
+    let color = match decision {
+        Some(Decision::Inclusion) => AnsiColor::Red,
+        Some(Decision::NoInclusion) => AnsiColor::Green,
+        None => AnsiColor::Yellow,
+    };
+    let (decided, rest) = words.split_at(words.find([',', ':']).unwrap_or(words.len()));
+    marked(decided, color) + rest
 }
 
 /// What was decided, whether the record fits, and what was assumed.
@@ -310,7 +323,7 @@ struct Warnings(Vec<&'static str>);
 impl Warnings {
     /// Implements: CLI-146.
     fn tell(&mut self, code: &'static str, file: impl Display, text: &str) {
-        eprintln!("palpate: warning: {}", one_line(&format!("{file}: {text}")));
+        warn(&format!("{file}: {text}"));
         self.0.push(code);
     }
 }

@@ -90,7 +90,7 @@ fn unplugged() -> String {
     format!("exit code 1, \"{said}\"")
 }
 
-/// Verifies: HID-094, HID-055.
+/// Verifies: HID-094, HID-055, HID-101.
 fn signalled(signal: &str) -> String {
     let board = Board::good(Kind::Uhid, "signalled", REPORTS);
     let player = play("signalled");
@@ -105,6 +105,7 @@ fn signalled(signal: &str) -> String {
     let record = board.unplug();
     assert_eq!(code, Some(0), "{said}");
     assert!(real_time, "no thread by SCHED_FIFO: {said}");
+    assert!(said.contains("note: Linux runs the loop"), "{said}");
     let dropped = record.dropped_after;
     assert!(dropped.is_none_or(|after| after > WATCHDOG), "{dropped:?}");
     stopped(&record);

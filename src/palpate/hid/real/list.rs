@@ -1,11 +1,10 @@
 //! Which HID devices there are, which profile each fits, and why one can not be opened.
 
 use std::fmt;
-use std::fs::OpenOptions;
-use std::path::Path;
 
 use hidapi::{DeviceInfo, HidApi};
 
+use super::system;
 use crate::hid::{DESCRIPTOR, uses_page};
 use crate::refusal::Refusal;
 
@@ -69,6 +68,17 @@ impl Profile {
             differs_at: same.take_while(|(one, other)| one == other).count(),
         }
     }
+
+    /// What a device of this usage fits, where the system passes on no report descriptor.
+    ///
+    /// Implements: HID-100.
+    pub fn of_usage(page: u16, usage: u16) -> Profile {
+        match (page, usage) {
+            (0xFF00, 1) => Profile::Vendor,
+            (0x0F, _) => Profile::Pid,
+            _ => Profile::Unknown(format!("not shown, but usage {usage} of page {page:#06x}")),
+        }
+    }
 }
 
 impl fmt::Display for Profile {
@@ -102,9 +112,7 @@ impl Listed {
     ///
     /// Implements: HID-031.
     pub fn access(&self) -> std::io::Result<()> {
-        let node = &self.identity.node;
-        let opened = OpenOptions::new().read(true).write(true).open(node);
-        opened.map(|_| ())
+        system::access(&self.identity.node)
     }
 }
 
@@ -131,17 +139,14 @@ pub(super) fn look(api: &HidApi) -> Vec<Listed> {
     let mut found: Vec<&DeviceInfo> = api.device_list().collect();
     found.sort_by_key(|info| info.path());
     found.dedup_by_key(|info| info.path());
-    found.into_iter().map(listed).collect()
+    found.into_iter().map(|info| listed(api, info)).collect()
 }
 
-fn listed(info: &DeviceInfo) -> Listed {
+fn listed(api: &HidApi, info: &DeviceInfo) -> Listed {
     let node = info.path().to_string_lossy().into_owned();
     let name = info.product_string().unwrap_or("unnamed device");
     Listed {
-        profile: match descriptor(&node) {
-            Ok(bytes) => Profile::of(&bytes),
-            Err(error) => Profile::Unknown(error.to_string()),
-        },
+        profile: system::profile(api, info),
         identity: Identity {
             vendor: info.vendor_id(),
             product: info.product_id(),
@@ -150,13 +155,6 @@ fn listed(info: &DeviceInfo) -> Listed {
             node,
         },
     }
-}
-
-/// The report descriptor, which the system shows also to those who may not open the device.
-fn descriptor(node: &str) -> std::io::Result<Vec<u8>> {
-    let name = Path::new(node).file_name().unwrap_or_default();
-    let device = Path::new("/sys/class/hidraw").join(name);
-    std::fs::read(device.join("device/report_descriptor"))
 }
 
 /// The udev rule that lets the person at the machine open a device.
@@ -174,6 +172,9 @@ pub fn udev_rule(identity: &Identity) -> String {
 
 /// What is said of a device that this user may not open.
 pub fn no_permission(identity: &Identity) -> String {
+    if !cfg!(target_os = "linux") {
+        return "no permission: the system, or another program, keeps it".into();
+    }
     let rule = udev_rule(identity);
     format!("no permission; the udev rule {rule} would give it")
 }

@@ -5,9 +5,11 @@
 //! | `mod.rs` | the device as the loop sees it |
 //! | `list.rs` | which devices there are, which profile each fits, and why one can not be opened |
 //! | `choose.rs` | the device that is asked for |
+//! | `system.rs` | what differs between operating systems |
 
 mod choose;
 mod list;
+mod system;
 #[cfg(test)]
 mod tests;
 
@@ -136,10 +138,15 @@ impl RealDevice {
 }
 
 /// What the library says of the device. It has no codes for that, only words: of its `poll`, of `ENODEV`, of `ESHUTDOWN` and of
-/// `ETIMEDOUT`.
+/// `ETIMEDOUT`, and of Windows's `ERROR_DEVICE_NOT_CONNECTED`.
 fn state(problem: &str) -> DeviceState {
     let says = |words: &str| problem.contains(words);
-    let gone = ["device disconnected", "No such device", "endpoint shutdown"];
+    let gone = [
+        "device disconnected",
+        "No such device",
+        "endpoint shutdown",
+        "os error 1167",
+    ];
     if gone.into_iter().any(says) {
         DeviceState::Gone
     } else if says("timed out") {

@@ -97,6 +97,19 @@ fn a_force_feedback_device_is_told_by_its_usage_page() {
     }
 }
 
+// Verifies: HID-100.
+#[test]
+fn without_a_descriptor_a_profile_is_told_by_its_usage() {
+    // The descriptor's own first items: usage page 0xFF00, usage 1.
+    assert_eq!(DESCRIPTOR[..5], [0x06, 0x00, 0xFF, 0x09, 0x01]);
+    assert_eq!(Profile::of_usage(0xFF00, 1), Profile::Vendor);
+    assert_eq!(Profile::of_usage(0x0F, 1), Profile::Pid);
+    for (page, usage) in [(0xFF00, 2), (1, 4), (0xFF, 1)] {
+        let found = Profile::of_usage(page, usage);
+        assert!(matches!(found, Profile::Unknown(_)), "{page} {usage}");
+    }
+}
+
 // Verifies: HID-031.
 #[test]
 fn the_rule_matches_the_node_by_the_device_above_it() {
@@ -137,6 +150,7 @@ fn an_unplug_is_told_from_a_refusal_by_what_the_library_says() {
         (&*no_device, Gone),
         (&shutdown, Gone),
         ("unexpected poll error (device disconnected)", Gone),
+        ("The device is not connected. (os error 1167)", Gone),
         ("ioctl (GFEATURE): ENODEV: No such device", Gone),
         (&timed_out, Stalled),
         ("ioctl (SFEATURE): ETIMEDOUT: Connection timed out", Stalled),

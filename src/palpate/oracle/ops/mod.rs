@@ -19,6 +19,7 @@ use super::answer::{Code, Refused, answer, json};
 use super::arguments::{Bits, List, Rows, Whole, arguments_of, with_arguments};
 use crate::detect;
 use crate::detect::noise_budget::noise_budget;
+use crate::refusal::did_you_mean;
 use crate::stats::{noncentral, normal};
 use counts::MOST_TRIALS;
 pub use probe::Models;
@@ -129,8 +130,9 @@ pub const OPS: &[Op] = &[
 /// [`Code::UnknownOp`].
 pub fn find(name: &str) -> Result<&'static Op, Refused> {
     OPS.iter().find(|op| op.name == name).ok_or_else(|| {
+        let similar = did_you_mean(name, names());
         let names = names().join(", ");
-        let unknown = format_args!("unknown op {name:?}; the ops are {names}");
+        let unknown = format_args!("unknown op {name:?}{similar}; the ops are {names}");
         Refused::new(Code::UnknownOp, unknown)
     })
 }
