@@ -76,7 +76,7 @@ pub unsafe extern "C" fn palpate_sequential_push(
         ];
         check_apart(&[bytes(detector, 1)], &row)?;
         let (found, memory) = unsafe { Kept::get_mut::<Detector>(detector.cast(), TAG) }?;
-        check_apart(&[memory.clone()], &row)?;
+        check_apart(core::slice::from_ref(memory), &row)?;
         let nuisances = unsafe { list(nuisances, nuisance_count) }?;
         let signals = unsafe { list(signals, signal_count) }?;
         Ok(found.push(residual, nuisances, signals)?)
