@@ -7,7 +7,8 @@ use palpate_verify::statistics::{Check, FIXED_SEED, battery};
 use rayon::prelude::*;
 
 // Verifies: DET-015, DET-013, DET-022, DET-025, DET-026, DET-040, DET-041, DET-050, DET-052, DET-053, DET-054, DET-070, DET-080,
-// DET-111, DET-110, DET-113, DET-130, NUI-001, NUI-003, NUI-008, NUI-014, NUI-013, NUI-016, NUI-020, ROB-031, ROB-032.
+// DET-111, DET-110, DET-113, DET-130, NUI-001, NUI-003, NUI-008, NUI-014, NUI-013, NUI-016, NUI-020, ROB-031, ROB-032, SEQ-001,
+// SEQ-010, SEQ-012.
 #[test]
 fn the_detector_obeys_its_laws_and_planted_defects_are_seen() {
     let seed = match std::env::var("PALPATE_SEED") {

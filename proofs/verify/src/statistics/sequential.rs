@@ -63,7 +63,7 @@ fn answer(defect: &str, truth: Decision, noise: &[f64]) -> Outcome<Option<Decisi
     let evidence = found.evidence().next().ok_or("no evidence")?;
     let ends = noise.len() == SHORT && defect != "truncation_forgotten";
     Ok(if ends {
-        Some(decide(evidence.theta(), 0.0)?)
+        Some(decide(theta(defect, evidence), 0.0)?)
     } else {
         None
     })
@@ -77,7 +77,13 @@ fn decided(defect: &str, test: &Wald, evidence: Evidence) -> Outcome<Option<Deci
             let eta = neyman_pearson_false_alarm_threshold(gamma, RATE)?;
             Some(decide(evidence.theta(), eta)?).filter(|answer| *answer == Decision::Inclusion)
         }
-        "half_left_out" => test.decide(evidence.theta() - 0.5 * evidence.gamma_squared)?,
-        _ => test.decide(evidence.theta())?,
+        _ => test.decide(theta(defect, evidence))?,
     })
+}
+
+fn theta(defect: &str, evidence: Evidence) -> f64 {
+    match defect {
+        "half_left_out" => evidence.theta() - 0.5 * evidence.gamma_squared,
+        _ => evidence.theta(),
+    }
 }
