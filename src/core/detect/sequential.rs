@@ -46,6 +46,8 @@ pub struct Sequential<M> {
     memory: M,
     nuisances: usize,
     hypotheses: usize,
+    /// The largest magnitude of a signal in any row: |δ|² of none is above the number of rows times its square.
+    largest: f64,
     rows: usize,
     missing: usize,
 }
@@ -96,6 +98,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> Sequential<M> {
             memory,
             nuisances,
             hypotheses,
+            largest: 0.0,
             rows: 0,
             missing: 0,
         })
@@ -123,6 +126,11 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> Sequential<M> {
         }
         check_row("residual", &[residual], 1)?;
         self.rows += 1;
+        for signal in signals {
+            if signal.abs() > self.largest {
+                self.largest = signal.abs();
+            }
+        }
         let width = self.width();
         let (row, rest) = self.memory.as_mut().split_at_mut(width);
         let (squares, rest) = rest.split_at_mut(width);
@@ -166,20 +174,26 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> Sequential<M> {
     /// Implements: SEQ-001, SEQ-004.
     pub fn evidence(&self) -> impl Iterator<Item = Evidence> {
         let [left, along] = [2, 3].map(|number| &self.line(number)[1..]);
-        left.iter()
-            .zip(along)
-            .enumerate()
-            .map(|(k, (&gamma_squared, &along))| {
-                let explained = |at: usize| {
-                    self.pivot(at) * self.line(4 + at)[1 + k] * self.line(4 + at)[1 + k]
-                };
-                let explained: f64 = (0..self.nuisances).map(explained).sum();
-                let is_left = gamma_squared > EXPLAINED * (gamma_squared + explained);
-                Evidence {
-                    along: if is_left { along } else { 0.0 },
-                    gamma_squared: if is_left { gamma_squared } else { 0.0 },
-                }
-            })
+        let most = self.rows as f64 * self.largest * self.largest;
+        let pairs = left.iter().zip(along).enumerate();
+        pairs.map(move |(signal, (&gamma_squared, &along))| {
+            // What the nuisances explain takes long to add up, and is seldom needed.
+            let is_left = gamma_squared > EXPLAINED * most
+                || gamma_squared > EXPLAINED * (gamma_squared + self.explained(signal));
+            Evidence {
+                along: if is_left { along } else { 0.0 },
+                gamma_squared: if is_left { gamma_squared } else { 0.0 },
+            }
+        })
+    }
+
+    /// |δ|² − |Pδ|²: Σ of the squares of a signal's numbers in the triangle.
+    fn explained(&self, signal: usize) -> f64 {
+        let square = |nuisance: usize| {
+            let number = self.line(4 + nuisance)[1 + signal];
+            self.pivot(nuisance) * number * number
+        };
+        (0..self.nuisances).map(square).sum()
     }
 
     /// The weight of a nuisance's line, 0 where the rows do not tell it from those before it.

@@ -123,10 +123,18 @@ fn level_of(word: &str) -> Result<NoiseLevel, Refused> {
 
 /// Nuisances of `samples` numbers each, one after the other.
 pub fn signals(nuisances: &Rows, samples: usize) -> Result<Vec<f64>, Refused> {
-    let number = nuisances.0.len();
-    if number > MOST_NUISANCES {
-        let wrong = format_args!("nuisances are {number}, but may be at most {MOST_NUISANCES}");
+    limited("nuisances", nuisances, samples, MOST_NUISANCES)
+}
+
+/// Of the argument `name` its lists of `samples` numbers each, one after the other.
+///
+/// # Errors
+/// More lists than `most`, or one of another length.
+pub fn limited(name: &str, lists: &Rows, samples: usize, most: usize) -> Result<Vec<f64>, Refused> {
+    let number = lists.0.len();
+    if number > most {
+        let wrong = format_args!("{name} are {number}, but may be at most {most}");
         return Err(Refused::range(wrong));
     }
-    nuisances.concat("nuisances", number, samples)
+    lists.concat(name, number, samples)
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::nuisance::signals;
+use super::nuisance::{limited, signals};
 use super::{Refused, Rows, answer};
 use crate::detect::Decision;
 use crate::detect::sequential::{Evidence, Sequential, Wald, memory};
@@ -22,12 +22,8 @@ pub fn sequential(
 ) -> Result<impl Serialize + use<>, Refused> {
     let (samples, hypotheses) = (residual.len(), templates.0.len());
     check_samples("residual", residual, samples)?;
-    if hypotheses > MOST_TEMPLATES {
-        let wrong = format_args!("templates are {hypotheses}, but may be at most {MOST_TEMPLATES}");
-        return Err(Refused::range(wrong));
-    }
+    let templates = limited("templates", templates, samples, MOST_TEMPLATES)?;
     let test = Wald::new(max_false_alarm, max_miss)?;
-    let templates = templates.concat("templates", hypotheses, samples)?;
     let signals = signals(nuisances, samples)?;
     let count = nuisances.0.len();
     let memory = vec![0.0; memory(hypotheses, count)];
