@@ -265,6 +265,53 @@ fn the_digits_are_those_of_exact_arithmetic() {
     assert_eq!((found.rows(), found.rank()), (12, 3));
 }
 
+// A gain of which the first row tells next to nothing and the others all: with u = (ε, 1, 1, 1), δ = (3, 1, 0, 2) and z = (1, 2, 5, −1) the
+// products are uᵀδ = 3 + 3ε, uᵀz = 6 + ε, δᵀz = 3, |δ|² = 14, |z|² = 31 and |u|² = 3 + ε², of which ε² is below the digits. The bound of
+// SEQ-001 for two columns, four rows and a condition of 1 is 3·2·2·8·2·2⁻⁵³ = 2·10⁻¹⁴ of 14, 31 and √14 (√31 + √14) = 35.
+// Verifies: SEQ-001.
+#[test]
+fn a_first_row_that_tells_little_costs_no_digits() {
+    for small in [1e-3, 1e-8, 1e-12, 1e-30] {
+        let sweep = Rows {
+            nuisances: vec![vec![small, 1.0, 1.0, 1.0]],
+            residual: vec![1.0, 2.0, 5.0, -1.0],
+            signals: vec![vec![3.0, 1.0, 0.0, 2.0]],
+        };
+        let found = sweep.pushed(0..4);
+        let evidence = found.evidence().next().unwrap();
+        let length = 3.0 + small * small;
+        let [signal, residual] = [3.0 + 3.0 * small, 6.0 + small];
+        let gamma_squared = 14.0 - signal * signal / length;
+        let along = 3.0 - signal * residual / length;
+        assert_near(evidence.gamma_squared, gamma_squared, 3e-13);
+        assert_near(evidence.along, along, 8e-13);
+        assert_near(found.residual(), 31.0 - residual * residual / length, 7e-13);
+    }
+}
+
+// Each nuisance has 10⁻¹¹ of its length beside those before it, so that the last row grows by 10¹¹ and its weight falls by 10⁻²² at each.
+// Verifies: SEQ-003, SEQ-006.
+#[test]
+fn numbers_that_grow_from_nuisance_to_nuisance_stay_finite() {
+    const COUNT: usize = 40;
+    let mut found = Sequential::new([0.0; memory(1, COUNT)], 1, COUNT).unwrap();
+    for own in 0..=COUNT {
+        let number = |at: usize| match at.cmp(&own) {
+            core::cmp::Ordering::Less if own < COUNT => 0.0,
+            core::cmp::Ordering::Equal => 1e-11,
+            _ => 1.0,
+        };
+        let nuisances: [f64; COUNT] = core::array::from_fn(number);
+        found.push(1.0, &nuisances, &[1.0 + own as f64]).unwrap();
+        let evidence = found.evidence().next().unwrap();
+        assert!(
+            evidence.theta().is_finite() && found.residual().is_finite(),
+            "{own}: {evidence:?}"
+        );
+    }
+    assert_eq!(found.rank(), COUNT);
+}
+
 // A gel whose forces are everywhere the same cannot tell a gain from an offset.
 // Verifies: SEQ-003, SEQ-004.
 #[test]
