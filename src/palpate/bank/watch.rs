@@ -181,7 +181,7 @@ impl Watcher {
     /// # Errors
     /// As [`Watcher::push`]; of a bank of several depths, no depth.
     ///
-    /// Implements: SEQ-030, SEQ-024.
+    /// Implements: SEQ-030, SEQ-031, SEQ-024.
     pub fn push_at(
         &mut self,
         x: f64,

@@ -100,7 +100,7 @@ impl Stencil {
 
 /// The rows whose polynomial stands for the forces between them, at most.
 ///
-/// Implements: MAP-090.
+/// Implements: MAP-090, MAP-091.
 const ROWS: usize = 4;
 
 impl ForceTable {

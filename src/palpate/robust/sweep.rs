@@ -50,7 +50,7 @@ impl RobustQuestion<'_> {
     /// The passes of a record under the probe of `reference` that are long enough to be sweeps, or the longest if none is; and how many
     /// samples the others have.
     ///
-    /// Implements: ROB-083.
+    /// Implements: ROB-083, ROB-084.
     pub fn passes(&self, record: &Record, reference: &ForceMap) -> (Vec<Record>, usize) {
         let radius = reference.phantom().map_or(RADIUS, |of| of.probe().radius);
         let width = |pass: &Record| {

@@ -852,10 +852,16 @@ fn trembling(bank: &Bank, has_disc: bool, trial: u64) -> Record {
     Record::along("path", &over, &depths, Force::new(&lateral, &normal)).unwrap()
 }
 
-// Verifies: ROB-081, ROB-083, ROB-080.
+// Verifies: ROB-081, ROB-083, ROB-080, BNK-081, BNK-020.
 #[test]
 fn passes_whose_depth_trembles_are_judged_by_what_the_maps_say_of_it() {
     let bank = deep_bank();
+    // Those of the probe, 0.3 mm above the first and below the last, and one between two.
+    let rows = bank.reference().table().depths();
+    assert_eq!(rows.len(), 11, "{rows:?}");
+    for (row, depth) in rows.iter().enumerate() {
+        assert_near(*depth, 1.7e-3 + 0.3e-3 * row as f64, 1e-9);
+    }
     let question = RobustQuestion::default();
     let judge = |record: &Record, has_depths: bool| {
         let (mut passes, left_out) = question.passes(record, bank.reference());

@@ -393,6 +393,8 @@ impl Record {
     }
 
     /// The record of samples over positions that go one way, or that have depths.
+    ///
+    /// Implements: TRC-010, TRC-081, TRC-085.
     fn of(file: String, mut samples: Vec<Sample>, [has_lateral, has_depths]: [bool; 2]) -> Record {
         if !has_depths && backwards(&samples) {
             samples.reverse();
