@@ -42,6 +42,20 @@ pub fn positions(text: &str) -> Result<List, String> {
     list(text, -3, "positions", "mm")
 }
 
+/// Reads a list of lengths above 0 in mm, as [`positions`].
+///
+/// Implements: CLI-202.
+///
+/// # Errors
+/// As [`positions`]; a length that is not above 0.
+pub fn lengths(text: &str) -> Result<List, String> {
+    let lengths = list(text, -3, "lengths", "mm")?;
+    match lengths.first() {
+        Some(first) if *first > 0.0 => Ok(lengths),
+        _ => Err(format!("must be {LENGTH}")),
+    }
+}
+
 /// Reads a list of moduli in kPa; gives pascals.
 ///
 /// Implements: CLI-154.
@@ -51,6 +65,8 @@ pub fn positions(text: &str) -> Result<List, String> {
 pub fn moduli(text: &str) -> Result<List, String> {
     list(text, 3, "moduli", "kPa")
 }
+
+const LENGTH: &str = "a length above 0 in mm, such as 2.5";
 
 /// Reads one number and multiplies it by 10^`power`; it must be as `is_right` says, and `must_be` in words.
 ///
@@ -73,8 +89,7 @@ pub fn for_each(numbers: &[f64], count: usize) -> Option<Vec<f64>> {
 /// # Errors
 /// As the functions below, a message that says what the number must be.
 pub fn length(text: &str) -> Result<f64, String> {
-    let must_be = "a length above 0 in mm, such as 2.5";
-    number(text.trim(), -3, |length| length > 0.0, must_be)
+    number(text.trim(), -3, |length| length > 0.0, LENGTH)
 }
 
 /// Reads a length of at least 0 in mm; gives metres.
