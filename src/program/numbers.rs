@@ -114,6 +114,32 @@ pub fn newtons(text: &str) -> Result<f64, String> {
     number(text, 0, |force| force > 0.0, must_be)
 }
 
+/// Reads a force of at least 0 in N.
+pub fn newtons_or_zero(text: &str) -> Result<f64, String> {
+    let must_be = "a force of at least 0 in N, such as 0.1";
+    number(text, 0, |force| force >= 0.0, must_be)
+}
+
+/// Reads a number of at least 0.
+pub fn at_least_0(text: &str) -> Result<f64, String> {
+    let must_be = "a number of at least 0, such as 0.5";
+    number(text, 0, |value| value >= 0.0, must_be)
+}
+
+/// Reads `N` numbers of at least 0, with commas between them.
+pub fn several<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let numbers = text.split(',').map(|number| at_least_0(number.trim()));
+    let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
+    let must_be = format!("must be {N} numbers with commas between them");
+    numbers.try_into().map_err(|_: Vec<f64>| must_be)
+}
+
+/// Reads a share of at least 0 and below 1.
+pub fn share_below_1(text: &str) -> Result<f64, String> {
+    let is_right = |share| (0.0..1.0).contains(&share);
+    number(text, 0, is_right, "a number of at least 0 and below 1")
+}
+
 /// Reads a coefficient of friction.
 pub fn friction(text: &str) -> Result<f64, String> {
     let must_be = "a coefficient of friction of at least 0, such as 0.3";
