@@ -101,24 +101,28 @@ impl Judge {
     }
 }
 
-/// The number of answers inclusion, no inclusion and none, of records over a gel.
+/// The number of answers inclusion, no inclusion and none, of records over a gel; and of those that are an inclusion, or were one if a
+/// posterior of 0.8 were enough.
 fn counts(
     detector: &RobustDetector<'_>,
     table: &ForceTable,
     [sd, stream]: [f64; 2],
     records: u64,
-) -> Counts {
-    let mut counts = [0; 3];
+) -> (Counts, u64) {
+    let (mut counts, mut less_sure) = ([0; 3], 0);
     for trial in 0..records {
         let passes = domed(table, sd, stream as u64, trial).passes();
         let forces: Vec<_> = passes.iter().map(Record::forces).collect();
-        counts[match detector.judge(&forces).unwrap().decision {
+        let answer = detector.judge(&forces).unwrap();
+        let is_weak = answer.causes == [Cause::TooWeak] && answer.posterior >= 0.8;
+        less_sure += u64::from(is_weak || answer.decision == Some(Decision::Inclusion));
+        counts[match answer.decision {
             Some(Decision::Inclusion) => 0,
             Some(Decision::NoInclusion) => 1,
             None => 2,
         }] += 1;
     }
-    counts
+    (counts, less_sure)
 }
 
 /// The gel on a finer mesh, at depths that are closer than those of the maps.
@@ -134,8 +138,8 @@ fn gels() -> Gel {
 fn a_few_paths_over_domed_gels() {
     let judge = Judge::new();
     let (detector, gels) = (judge.detector(), gels());
-    let without = counts(&detector, &gels[0], [0.1, 1.0], 12);
-    let with = counts(&detector, &gels[1], [0.1, 2.0], 12);
+    let (without, _) = counts(&detector, &gels[0], [0.1, 1.0], 12);
+    let (with, _) = counts(&detector, &gels[1], [0.1, 2.0], 12);
     assert!(without[0] <= 2, "{without:?}");
     assert!(with[0] >= 10, "{with:?}");
 }
@@ -147,16 +151,29 @@ fn paths_over_domed_gels_keep_their_rates() {
     let records = 400;
     let judge = Judge::new();
     let (detector, gels) = (judge.detector(), gels());
-    for (number, sd) in [(1.0, 0.02), (2.0, 0.1)] {
-        let without = counts(&detector, &gels[0], [sd, 10.0 + number], records);
-        let with = counts(&detector, &gels[1], [sd, 20.0 + number], records);
-        let [rate, found] =
-            [without[0], with[0]].map(|of| clopper_pearson(of, records, 0.95).unwrap());
-        println!(
-            "noise {sd} N: without {without:?}, false {rate:?}; with {with:?}, found {found:?}"
+    // Beside a domed surface γ is 4.0 in noise of 0.1 N: a posterior of 0.95 comes with a probability of Φ((γ²/2 − ln 19)/γ) = 0.90 at most.
+    for (number, sd, least) in [(1.0, 0.02, 0.95), (2.0, 0.1, 0.8)] {
+        let (without, less_sure_without) =
+            counts(&detector, &gels[0], [sd, 10.0 + number], records);
+        let (with, less_sure_with) = counts(&detector, &gels[1], [sd, 20.0 + number], records);
+        let rates = [without[0], less_sure_without, with[0], less_sure_with];
+        println!("noise {sd} N: without {without:?}, with {with:?}");
+        for (what, count) in ["false", "false at 0.8", "found", "found at 0.8"]
+            .iter()
+            .zip(rates)
+        {
+            println!(
+                "{what}: {count}, {:?}",
+                clopper_pearson(count, records, 0.95).unwrap()
+            );
+        }
+        for (count, most) in [(without[0], 0.05), (less_sure_without, 0.2)] {
+            assert!(clopper_pearson(count, records, 0.95).unwrap().upper <= most);
+        }
+        assert!(with[0] as f64 >= least * records as f64, "{with:?}");
+        assert!(
+            less_sure_with as f64 >= 0.95 * records as f64,
+            "{less_sure_with}"
         );
-        // The answer is sure from 0.95 on.
-        assert!(rate.upper <= 0.05, "{rate:?}");
-        assert!(with[0] as f64 >= 0.95 * records as f64, "{with:?}");
     }
 }
