@@ -59,7 +59,7 @@ fn the_bank_finds_an_inclusion_that_was_moved() {
     let error = place().refused(&format!(
         "detect --model exact moved.csv {BY_BANK} --depth-mm 3.1"
     ));
-    assert!(error.contains("0.003 m, for which the bank is"), "{error}");
+    assert!(error.contains("3.0 mm, for which the bank is"), "{error}");
     // Beside what is unknown by default, the same place.
     let found = located("moved.csv", "");
     assert_eq!(found["decision"], "inclusion");

@@ -6,11 +6,14 @@ use super::detector::BankDetector;
 use super::information::PlaceBound;
 use super::place::PlacePosterior;
 use super::rates::{CalibratedThreshold, false_alarm_bound, false_alarm_threshold};
+use crate::decimal::mm;
 use crate::detect::nuisance::{NoiseLevel, SubspaceTest};
 use crate::detect::{Decision, DetectError, decide, map_threshold, posterior};
 use crate::force::Force;
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
+use crate::text::extremes;
+use crate::trace::contact::{RADIUS, is_narrow};
 use crate::trace::design::{Design, difference, expected, squares, whitened};
 use crate::trace::{Cause, Criterion, Fit, Question, Record, refused};
 
@@ -80,12 +83,12 @@ impl BankSearch<'_> {
     /// A depth other than the bank's; positions outside it; a prior of another length; maps that differ by what is unknown alone;
     /// whatever the detector refuses.
     ///
-    /// Implements: BNK-060, BNK-033, BNK-034.
+    /// Implements: BNK-060, BNK-033, BNK-034, TRC-075.
     pub fn locate(&self, record: &Record) -> Result<Location, Refusal> {
         let located = || {
             let (question, depth) = (&self.question, self.bank.depth());
-            let found = format!("{} m", question.depth);
-            let right = format!("{depth} m, for which the bank is");
+            let found = format!("{} mm", mm(question.depth));
+            let right = format!("{} mm, for which the bank is", mm(depth));
             let other = Refusal::value("depth of the sweep", found, right);
             other.when((depth - question.depth).abs() > SAME_POSITION)?;
             let mut design = Design::new(question, self.bank.reference().table(), record)?;
@@ -108,7 +111,15 @@ impl BankSearch<'_> {
             // Nothing is over that of a force that is not there.
             let noise_sd = fit.noise_sd.map(|sd| sd.unwrap_or(1.0));
             let detector = self.detector(&white, &signals, noise_sd, level)?;
-            self.judge(&detector, &mut white, fit)
+            let mut found = self.judge(&detector, &mut white, fit)?;
+            let radius = self.bank.reference().phantom();
+            let radius = radius.map_or(RADIUS, |of| of.probe().radius);
+            let [first, last] = extremes(record.positions().iter().copied()).unwrap_or_default();
+            if is_narrow(last - first, radius) {
+                found.decision = None;
+                found.causes.insert(0, Cause::Narrow);
+            }
+            Ok(found)
         };
         located().map_err(|refusal: Refusal| refusal.in_file(record.file()))
     }

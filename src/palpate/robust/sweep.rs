@@ -11,13 +11,8 @@ use crate::force::Force;
 use crate::force_map::ForceTable;
 use crate::refusal::Refusal;
 use crate::trace::Cause;
-use crate::trace::contact::{in_air, level};
+use crate::trace::contact::{RADIUS, in_air, is_narrow, level};
 use crate::trace::design::depth_slope;
-
-/// The radius of the probe where no phantom says it, m: the paper's.
-const RADIUS: f64 = 6.5e-3;
-/// A sweep over less than this share of the radius of the probe shows no inclusion.
-const NARROW: f64 = 0.46;
 
 /// A sweep in its modes.
 pub struct PreparedSweep {
@@ -128,7 +123,7 @@ impl PreparedSweep {
         forces: Force<&[f64]>,
     ) -> Result<Cleaned, Cause> {
         let modes = &self.modes;
-        if modes.width < NARROW * self.undisturbed.radius {
+        if is_narrow(modes.width, self.undisturbed.radius) {
             return Err(Cause::Narrow);
         }
         if forces.into_array().into_iter().any(gates::is_saturated) {
