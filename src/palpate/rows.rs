@@ -328,25 +328,39 @@ impl Location {
         Ok(rows)
     }
 
+    /// The 95 % interval of the parameter of one axis, around its estimate; none if the bank does not vary it.
+    ///
+    /// # Errors
+    /// An interval that is not finite.
+    ///
+    /// Implements: CLI-153.
+    pub fn interval(&self, bank: &Bank, axis: usize) -> Result<Option<PlaceInterval>, Refusal> {
+        let &[first, .., last] = &bank.axes()[axis][..] else {
+            return Ok(None);
+        };
+        let estimate = self.place.estimate[axis];
+        let bounds = self.place.interval(axis, CREDIBLE)?;
+        // Where the likelihood still rises at an end of the bank, that is no end of the interval; near it the likeliest place may lie
+        // where the tail is.
+        let is_within = |end: f64| (end - estimate).abs() > SAME_POSITION;
+        Ok(Some(PlaceInterval {
+            estimate,
+            lower: is_within(first).then_some(bounds.lower.min(estimate)),
+            upper: is_within(last).then_some(bounds.upper.max(estimate)),
+        }))
+    }
+
     /// The estimate of each parameter that the bank varies.
     ///
     /// Implements: CLI-153.
     fn place_rows(&self, bank: &Bank, rows: &mut Rows) -> Result<(), Refusal> {
         let mean = self.place.mean();
         for (axis, parameter) in Parameter::ALL.into_iter().enumerate() {
-            let (&[first, .., last], sd) = (&bank.axes()[axis][..], self.bound.sd[axis]) else {
+            let Some(interval) = self.interval(bank, axis)? else {
                 continue;
             };
             let (key, scale, label) = parameter_row(parameter);
-            let estimate = self.place.estimate[axis];
-            let bounds = self.place.interval(axis, CREDIBLE)?;
-            // Where the likelihood still rises at an end of the bank, that is no end of the interval.
-            let is_within = |end: f64| (end - estimate).abs() > SAME_POSITION;
-            let interval = PlaceInterval {
-                estimate,
-                lower: is_within(first).then_some(bounds.lower),
-                upper: is_within(last).then_some(bounds.upper),
-            };
+            let (estimate, sd) = (interval.estimate, self.bound.sd[axis]);
             let ends = [interval.lower, interval.upper];
             let value = json!({"estimate": estimate, "mean": mean[axis], "interval": ends, "sd_bound": sd, "unit": parameter.unit()});
             let shown = |x: f64| format!("{:.3}", scale * x);

@@ -11,6 +11,8 @@ use crate::detect::{Decision, DetectError, decide, map_threshold, posterior};
 use crate::force::Force;
 use crate::force_map::ForceMap;
 use crate::refusal::Refusal;
+use crate::text::extremes;
+use crate::trace::contact::{RADIUS, is_narrow};
 use crate::trace::design::{Design, difference, expected, squares, whitened};
 use crate::trace::{Cause, Criterion, Fit, Question, Record, refused};
 
@@ -80,7 +82,7 @@ impl BankSearch<'_> {
     /// A depth other than the bank's; positions outside it; a prior of another length; maps that differ by what is unknown alone;
     /// whatever the detector refuses.
     ///
-    /// Implements: BNK-060, BNK-033, BNK-034.
+    /// Implements: BNK-060, BNK-033, BNK-034, TRC-075.
     pub fn locate(&self, record: &Record) -> Result<Location, Refusal> {
         let located = || {
             let (question, depth) = (&self.question, self.question.depth);
@@ -108,7 +110,15 @@ impl BankSearch<'_> {
             // Nothing is over that of a force that is not there.
             let noise_sd = fit.noise_sd.map(|sd| sd.unwrap_or(1.0));
             let detector = self.detector(&white, &signals, noise_sd, level)?;
-            self.judge(&detector, &mut white, fit)
+            let mut found = self.judge(&detector, &mut white, fit)?;
+            let radius = self.bank.reference().phantom();
+            let radius = radius.map_or(RADIUS, |of| of.probe().radius);
+            let [first, last] = extremes(record.positions().iter().copied()).unwrap_or_default();
+            if is_narrow(last - first, radius) {
+                found.decision = None;
+                found.causes.insert(0, Cause::Narrow);
+            }
+            Ok(found)
         };
         located().map_err(|refusal: Refusal| refusal.in_file(record.file()))
     }

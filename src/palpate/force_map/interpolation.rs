@@ -1,6 +1,7 @@
 //! Forces between the poses of a table, and beyond them (paper §4; `spec/force-map.md`, `spec/trace.md`).
 
 use super::{ForceTable, Matrix, SAME_POSITION};
+use crate::decimal::mm;
 use crate::force::Force;
 use crate::refusal::Refusal;
 
@@ -202,9 +203,9 @@ fn placed<P>(
     find: impl Fn(&[f64], f64) -> Option<P>,
 ) -> Result<P, Refusal> {
     find(axis, position).ok_or_else(|| {
-        let (first, last) = (axis[0], axis[axis.len() - 1]);
-        let map = format!("the map, which has {first} to {last} m");
-        Refusal::state(format!("{name} {position} m is outside {map}"), "")
+        let [position, first, last] = [position, axis[0], axis[axis.len() - 1]].map(mm);
+        let map = format!("the map, which has {first} to {last} mm");
+        Refusal::state(format!("{name} {position} mm is outside {map}"), "")
     })
 }
 
@@ -338,15 +339,17 @@ mod tests {
     fn nothing_is_extrapolated() {
         for depth in [-2e-9, 0.004 + 2e-9, f64::NAN, f64::INFINITY] {
             let error = poses().sweep(depth, &[0.0]).unwrap_err().to_string();
-            assert!(error.starts_with(&format!("depth {depth} m is outside the map")));
+            assert!(error.starts_with(&format!("depth {} mm is outside the map", mm(depth))));
         }
         for x in [-0.002 - 2e-9, 0.003 + 2e-9, f64::NAN, f64::NEG_INFINITY] {
             let error = poses().sweep(0.001, &[0.0, x]).unwrap_err().to_string();
-            assert!(error.starts_with(&format!("lateral position {x} m is outside the map")));
+            assert!(
+                error.starts_with(&format!("lateral position {} mm is outside the map", mm(x)))
+            );
         }
         assert_error(
             poses().sweep(0.005, &[0.0]),
-            "depth 0.005 m is outside the map, which has 0 to 0.004 m",
+            "depth 5.0 mm is outside the map, which has 0.0 to 4.0 mm",
         );
     }
 }

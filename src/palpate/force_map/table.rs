@@ -5,6 +5,7 @@ use std::fmt::Display;
 
 use serde::{Deserialize, Serialize, Serializer};
 
+use crate::decimal::mm;
 use crate::force::Force;
 use crate::refusal::Refusal;
 
@@ -378,8 +379,9 @@ impl ForceTable {
 fn place_of(name: &str, axis: &[f64], position: f64) -> Result<usize, Refusal> {
     let same = |&entry: &f64| (entry - position).abs() <= SAME_POSITION;
     axis.iter().position(same).ok_or_else(|| {
-        let found = format!("{name} {position} m is not in the map");
-        Refusal::state(found, format!("give one of {axis:?} m"))
+        let axis: Vec<_> = axis.iter().map(|&entry| mm(entry).to_string()).collect();
+        let found = format!("{name} {} mm is not in the map", mm(position));
+        Refusal::state(found, format!("give one of {} mm", axis.join(", ")))
     })
 }
 

@@ -370,7 +370,7 @@ fn forces_at_a_stored_depth() {
     assert_eq!(row.lateral, [0.0, -0.11, -0.12]);
     assert_error(
         table.row(0.0005),
-        "depth 0.0005 m is not in the map; give one of [0.0, 0.001] m",
+        "depth 0.5 mm is not in the map; give one of 0.0, 1.0 mm",
     );
     assert!(table.row(0.001 + 1.1e-9).is_err() && table.row(f64::NAN).is_err());
 }

@@ -7,7 +7,6 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::classes::{CLASSES, Class, Covariance, Disturbances, Part, SUPPORT_ALONE, SharedBy};
 use super::evidence::{Evidence, Signal, WeightedClass, evidence};
-use super::gates::wrong_level;
 use super::sweep::{Cleaned, PreparedSweep, prepared};
 use super::{RobustAnswer, RobustQuestion, RobustSignal, RobustSweep, channels};
 use crate::detect::{Decision, DetectError, ErrorRates, error_rates, map_threshold, posterior};
@@ -15,6 +14,7 @@ use crate::force::Force;
 use crate::force_map::ForceTable;
 use crate::refusal::Refusal;
 use crate::stats::noncentral::chi_square;
+use crate::trace::contact::wrong_level;
 use crate::trace::{Cause, refused};
 
 /// A record that fits a class and hypothesis is farther from its mean with this probability.

@@ -1,8 +1,6 @@
 //! What is wrong with a record whatever the gel: a sensor at its end, glitches, another unit or sign, no contact.
 
 use super::modes::Modes;
-use crate::trace::Cause;
-use crate::trace::contact::LEAST_LEVEL;
 
 /// A sample is a glitch if it is so many standard deviations from what the others say of it.
 const GLITCH: f64 = 6.0;
@@ -12,12 +10,6 @@ const MOST_GLITCHES_SHARE: f64 = 0.05;
 /// A record whose noise is to be estimated has at least so many samples, and one in stated noise so many.
 pub const LEAST_SAMPLES: usize = 20;
 pub const LEAST_SAMPLES_IN_NOISE: usize = 8;
-/// The level of a record of the gel: of computed gels 0.57 to 1.34, at finite strain up to 1.83.
-const LEVEL: [f64; 2] = [LEAST_LEVEL, 2.2];
-/// From here on another unit is likelier than anything else, and below its inverse too.
-const UNIT: f64 = 30.0;
-/// Below this the sign is another.
-const SIGN: f64 = -0.4;
 
 /// Whether one end of the range of `channel` occurs too often: the sensor was at its end.
 ///
@@ -84,17 +76,4 @@ pub fn without_glitches(modes: &Modes, channel: &mut [f64], step: f64) -> Option
         channel[worst] -= left[worst] / free[worst];
     }
     None
-}
-
-/// What the level of a record, Σ F f/Σ f² of its normal force, says is wrong.
-///
-/// Implements: ROB-003.
-pub fn wrong_level(level: f64) -> Option<Cause> {
-    match level {
-        level if level > UNIT => Some(Cause::ForceUnit),
-        level if level > LEVEL[1] => Some(Cause::Level),
-        level if level >= LEVEL[0] => None,
-        level if level < SIGN => Some(Cause::Sign),
-        _ => Some(Cause::NoContact),
-    }
 }

@@ -10,14 +10,9 @@ use super::{RobustQuestion, RobustSweep, channels, expected};
 use crate::force::Force;
 use crate::force_map::{ForceMap, ForceTable};
 use crate::refusal::Refusal;
-use crate::trace::contact::{in_air, level};
+use crate::trace::contact::{RADIUS, in_air, is_narrow, level};
 use crate::trace::design::{difference, slope};
 use crate::trace::{Cause, Record};
-
-/// The radius of the probe where no phantom says it, m: the paper's.
-const RADIUS: f64 = 6.5e-3;
-/// A sweep over less than this share of the radius of the probe shows no inclusion.
-const NARROW: f64 = 0.46;
 
 /// The force at a sample is at most so many times that at the mean depth.
 const MOST_SHARE: f64 = 10.0;
@@ -58,7 +53,7 @@ impl RobustQuestion<'_> {
             x[x.len() - 1] - x[0]
         };
         let is_long = |pass: &Record| {
-            width(pass) >= NARROW * radius && pass.positions().len() >= self.least_samples()
+            !is_narrow(width(pass), radius) && pass.positions().len() >= self.least_samples()
         };
         let mut passes = record.passes();
         if passes.iter().any(is_long) {
@@ -211,7 +206,7 @@ impl PreparedSweep {
         forces: Force<&[f64]>,
     ) -> Result<Cleaned, Cause> {
         let modes = &self.modes;
-        if modes.width < NARROW * self.undisturbed.radius {
+        if is_narrow(modes.width, self.undisturbed.radius) {
             return Err(Cause::Narrow);
         }
         if forces.into_array().into_iter().any(gates::is_saturated) {

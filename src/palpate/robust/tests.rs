@@ -8,7 +8,7 @@ use super::classes::{CLASSES, Covariance, Disturbances, Part, Undisturbed};
 use super::detector::joined;
 use super::evidence::{Signal, WeightedClass, evidence};
 use super::explanation::fitted;
-use super::gates::{is_saturated, step, without_glitches, wrong_level};
+use super::gates::{is_saturated, step, without_glitches};
 use super::modes::Modes;
 use super::{
     BankHypotheses, GelChanges, GelUncertainty, RobustAnswer, RobustDetector, RobustQuestion,
@@ -21,6 +21,7 @@ use crate::force::Force;
 use crate::force_map::{ForceMap, ForceTable, Hypotheses, Matrix};
 use crate::phantom::Phantom;
 use crate::stats::random::Generator;
+use crate::trace::contact::wrong_level;
 use crate::trace::{Cause, Record};
 use palpate_asserts::assert_near;
 

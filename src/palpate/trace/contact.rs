@@ -1,9 +1,22 @@
 //! Whether a record is of a probe that touches the gel.
 
+use super::fit::Cause;
+
 /// A record that touches has such a level at least.
 ///
 /// Implements: ROB-003, TRC-016.
 pub const LEAST_LEVEL: f64 = 0.5;
+/// The level of a record of the gel: of computed gels 0.57 to 1.34, at finite strain up to 1.83.
+const LEVEL: [f64; 2] = [LEAST_LEVEL, 2.2];
+/// From here on another unit is likelier than anything else.
+const UNIT: f64 = 30.0;
+/// Below this the sign is another.
+const SIGN: f64 = -0.4;
+
+/// The radius of the probe where no phantom says it, m: the paper's.
+pub const RADIUS: f64 = 6.5e-3;
+/// A sweep over less than this share of the radius of the probe shows no inclusion.
+const NARROW: f64 = 0.46;
 
 /// The force of touching is that of the part in which it is largest, of so many.
 const PARTS: usize = 4;
@@ -17,6 +30,26 @@ pub fn level(forces: &[f64], expected: &[f64]) -> f64 {
     let cross: f64 = forces.iter().zip(expected).map(|(a, b)| a * b).sum();
     let square: f64 = expected.iter().map(|b| b * b).sum();
     cross / square.max(f64::MIN_POSITIVE)
+}
+
+/// Whether a sweep of this width, m, is too short to show an inclusion.
+///
+/// Implements: ROB-004.
+pub fn is_narrow(width: f64, radius: f64) -> bool {
+    width < NARROW * radius
+}
+
+/// What the level of a record, Σ F f/Σ f² of its normal force, says is wrong.
+///
+/// Implements: ROB-003, TRC-016.
+pub fn wrong_level(level: f64) -> Option<Cause> {
+    match level {
+        level if level > UNIT => Some(Cause::ForceUnit),
+        level if level > LEVEL[1] => Some(Cause::Level),
+        level if level >= LEVEL[0] => None,
+        level if level < SIGN => Some(Cause::Sign),
+        _ => Some(Cause::NoContact),
+    }
 }
 
 /// How many samples at the start and at the end are in air: those beside the part of the record that is likeliest in contact, in noise of

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::contact::{LEAST_LEVEL, in_air, level};
+use super::contact::{in_air, level, wrong_level};
 use super::design::{Design, Unknown, squares, whitened};
 use super::judge::{Correlation, Noise, Question};
 use super::{Trace, refused};
@@ -162,15 +162,21 @@ impl Fit {
     /// Implements: TRC-070, TRC-075, TRC-016, TRC-017.
     pub fn causes(&self) -> Vec<Cause> {
         let is_coloured = self.whiteness.is_some_and(|p| p < MISFIT_RATE);
-        let is_low = |level: f64| level.abs() < LEAST_LEVEL;
+        // Another gel than that of the maps is a gain.
+        let level = self
+            .level
+            .and_then(wrong_level)
+            .filter(|&of| of != Cause::Level);
         let checks = [
-            (self.level.is_some_and(is_low), Cause::NoContact),
             (self.in_air != [0; 2], Cause::InAir),
             (!self.noise_is_right(), Cause::Misfit),
             (is_coloured, Cause::Coloured),
         ];
         let causes = checks.into_iter().filter(|(is_so, _)| *is_so);
-        causes.map(|(_, cause)| cause).collect()
+        level
+            .into_iter()
+            .chain(causes.map(|(_, cause)| cause))
+            .collect()
     }
 }
 

@@ -54,7 +54,7 @@ fn what_is_no_bank_is_refused() {
     let narrow = "maps[1]: its lateral positions are not those of the reference; give the same";
     refused(&|maps| maps[1] = cut(&maps[1]), narrow);
     let error = Bank::new(map(None, &[3e-3]), maps()).unwrap_err();
-    let shallow = "depth 0.004 m is not in the map; give one of [0.003] m";
+    let shallow = "depth 4.0 mm is not in the map; give one of 3.0 mm";
     assert!(error.to_string().starts_with(shallow), "{error}");
 }
 

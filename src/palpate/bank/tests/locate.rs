@@ -51,6 +51,24 @@ fn a_record_of_the_normal_force_alone_is_located_by_it() {
     );
 }
 
+// Verifies: TRC-075. Positions in m where mm are meant.
+#[test]
+fn a_record_of_one_place_is_not_judged() {
+    let bank = all();
+    let wide = record(&bank.maps()[4], Some(7), 0.0, 1.0);
+    let positions: Vec<f64> = wide.positions().iter().map(|x| 1e-3 * x).collect();
+    let narrow = Record::new("t", &positions, wide.forces()).unwrap();
+    let mut search = by_map(&bank);
+    search.question.unknown = &[];
+    search.question.noise.sd = None;
+    let [wide, narrow] = [wide, narrow].map(|record| search.locate(&record).unwrap());
+    assert_eq!(
+        (wide.decision, narrow.decision),
+        (Some(Decision::Inclusion), None)
+    );
+    assert_eq!((&*wide.causes, narrow.causes[0]), (&[][..], Cause::Narrow));
+}
+
 pub const USUAL: &[Unknown] = &[Unknown::Offset, Unknown::Drift, Unknown::Gain];
 
 pub fn question<'a>(unknown: &'a [Unknown], criterion: Criterion) -> Question<'a> {

@@ -73,7 +73,7 @@ fn maps_that_do_not_fit_are_refused() {
         judged(&far, &table(0.0), 0.001),
     ];
     let expected = "t.csv: the maps do not differ at the samples, and leave no signal to decide by
-t.csv: depth 0.0035 m is outside the map, which has 0.001 to 0.003 m
+t.csv: depth 3.5 mm is outside the map, which has 1.0 to 3.0 mm
 t.csv:5: position 3.1 mm is outside the maps, which have -3.0 to 3.0 mm; leave it out, or use --trim";
     assert_eq!(found.join("\n"), expected);
     let table = |depths: [f64; 2]| {
@@ -384,7 +384,7 @@ const USUAL: &[Unknown] = {
     &[Offset, Drift, Gain, Variance]
 };
 
-// Verifies: TRC-070, TRC-075.
+// Verifies: TRC-070, TRC-075, TRC-016.
 #[test]
 fn a_record_that_cannot_be_judged_has_a_cause() {
     let held = {
@@ -405,19 +405,23 @@ fn a_record_that_cannot_be_judged_has_a_cause() {
         }
         record
     };
-    for (record, stated, cause) in [
-        (scaled(0.5, 1.0, 1.0), 0.1, None),
-        (scaled(0.0, 1.0, 1.0), 0.1, None),
+    use Cause::{Coloured, ForceUnit, Misfit, Sign};
+    for (record, stated, causes) in [
+        (scaled(0.5, 1.0, 1.0), Some(0.1), &[][..]),
+        (scaled(0.0, 1.0, 1.0), Some(0.1), &[]),
         // A gel that is nearly twice as stiff, in nearly twice the noise.
-        (scaled(0.5, 1.9, 1.9), 0.19, None),
-        (scaled(0.5, 1e3, 1e3), 0.1, Some(Cause::Misfit)),
-        (scaled(0.5, 1.0, 1.0), 0.035, Some(Cause::Misfit)),
-        (scaled(0.5, 1.0, 1.0), 0.29, Some(Cause::Misfit)),
-        (held, 0.1, Some(Cause::Coloured)),
+        (scaled(0.5, 1.9, 1.9), Some(0.19), &[]),
+        // Millinewtons, gram-force, and a sensor the other way round, whose noise nobody states.
+        (scaled(0.5, 1e3, 1e3), Some(0.1), &[ForceUnit, Misfit]),
+        (scaled(0.5, 102.0, 102.0), None, &[ForceUnit]),
+        (scaled(0.5, -1.0, -1.0), None, &[Sign]),
+        (scaled(0.5, 1.0, 1.0), Some(0.035), &[Misfit]),
+        (scaled(0.5, 1.0, 1.0), Some(0.29), &[Misfit]),
+        (held, Some(0.1), &[Coloured]),
     ] {
-        let found = asked(&record, USUAL, Some(stated));
-        assert_eq!(found.causes, Vec::from_iter(cause), "{found:?}");
-        assert_eq!(found.decision.is_none(), cause.is_some());
+        let found = asked(&record, USUAL, stated);
+        assert_eq!(found.causes, causes, "{found:?}");
+        assert_eq!(found.decision.is_none(), !causes.is_empty());
     }
 }
 
