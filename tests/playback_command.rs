@@ -372,6 +372,9 @@ fn the_bridge_drops_the_force_of_a_loop_that_falls_silent() {
         let (said, code) = bridged(&here, &["sh", "-c", &script]);
         assert_eq!(code, Some(0), "{said}");
         assert_has(&said, "force 1.0000 N at|last force 0.0000 0.0000 N");
+        let (before, _) = said.split_once(" positions, ").expect(&said);
+        let positions: u32 = before.rsplit(' ').next().unwrap().parse().unwrap();
+        assert!(positions < 500, "{said}");
     }
 }
 
