@@ -205,13 +205,13 @@ impl ServoState {
 /// One cycle of the servo kernel: (next state, force (lateral, normal) in N, playing), where playing says that the force follows the
 /// table. sample: the newest report, None if none came; request: "none", "arm" or "disarm".
 ///
-/// To arm, ask once, not in the cycle before, with a fresh sample and the deadman switch not held; then hold it:
+/// To arm, ask in one cycle after the first, with a fresh sample and the deadman switch not held; then hold it:
 ///
 /// >>> table = ServoTable(Phantom("none").map([1, 4], [-5, 0, 5], mesh_mm=2))
 /// >>> limits, state = Limits(3, 0.05, 0.25, 5), ServoState()
-/// >>> state, force, playing = step(table, limits, state, Sample(0, 2.0, 0.0, deadman=False), "arm")
-/// >>> for sequence in range(1, 100):
-/// ...     state, force, playing = step(table, limits, state, Sample(sequence, 2.0, 0.0, deadman=True))
+/// >>> for cycle in range(100):
+/// ...     sample = Sample(cycle, 2.0, 0.0, deadman=cycle > 1)
+/// ...     state, force, playing = step(table, limits, state, sample, "arm" if cycle == 1 else "none")
 /// >>> state.mode, playing, force[1] == table.force(2, 0)[1]
 /// ('armed', True, True)
 #[pyfunction]
