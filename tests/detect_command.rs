@@ -5,6 +5,7 @@ mod air;
 mod bank;
 mod many;
 mod one_channel;
+mod paths;
 mod refused;
 mod robust;
 

@@ -178,12 +178,32 @@ fn files_on_the_pages_are_those_of_the_sources() {
             .steps
             .iter()
             .filter_map(|step| Some((step, step.file.as_ref()?)));
-        for (step, file) in files.filter(|(_, file)| file.starts_with("docs/")) {
+        let is_ours = |file: &str| file.starts_with("docs/") || file.starts_with(".github/");
+        for (step, file) in files.filter(|(_, file)| is_ours(file)) {
             assert_eq!(step.text, text(file), "{}: {file}", page.name);
             same += 1;
         }
     }
-    assert!(same >= 3, "{same} files: are the pages read?");
+    assert!(same >= 4, "{same} files: are the pages read?");
+}
+
+#[test]
+fn the_site_has_every_page_of_docs_and_spec() {
+    let summary = Page::read(&at("docs/site/SUMMARY.md"));
+    let listed: Vec<String> = summary.links().into_iter().map(|(file, _)| file).collect();
+    let unique: BTreeSet<&String> = listed.iter().collect();
+    assert_eq!(listed.len(), unique.len(), "a page is listed twice");
+    for file in &listed {
+        assert!(at(file).is_file(), "no {file}");
+    }
+    for folder in ["docs", "docs/how-to", "spec"] {
+        for entry in fs::read_dir(at(folder)).unwrap() {
+            let name = entry.unwrap().file_name().into_string().unwrap();
+            let page = format!("{folder}/{name}");
+            let is_missing = name.ends_with(".md") && !listed.contains(&page);
+            assert!(!is_missing, "docs/site/SUMMARY.md does not list {page}");
+        }
+    }
 }
 
 #[test]

@@ -28,6 +28,7 @@ mod report_page;
 mod robust_families;
 mod run_command;
 mod second_opinion;
+mod simulate_command;
 mod study_command;
 mod vectors_suite;
 mod watch_command;

@@ -278,3 +278,136 @@ fn an_experiment_goes_on_after_an_abort() {
         assert!(told.starts_with("8 of 20 pairs answered"), "{told}");
     }
 }
+
+/// The bridge of `contrib/bridge` to the stub of a maker's library, compiled.
+#[cfg(unix)]
+fn bridge(here: &Place) -> std::path::PathBuf {
+    let (bridge, sources) = (
+        here.at("bridge"),
+        ["contrib/bridge/bridge.c", "tests/bridge/vendor.c"],
+    );
+    let mut compiler = Command::new("cc");
+    let flags =
+        "-std=c11 -D_POSIX_C_SOURCE=200809L -O2 -Wall -Wextra -Wpedantic -Werror -Icontrib/bridge";
+    compiler
+        .current_dir(crate::ROOT)
+        .args(flags.split(' '))
+        .args(sources);
+    let compiled = compiler.arg("-o").arg(&bridge).arg("-lm").output().unwrap();
+    assert!(compiled.status.success(), "{}", text(&compiled.stderr));
+    bridge
+}
+
+/// What the bridge says, and its exit code, with this command on the other side.
+#[cfg(unix)]
+fn bridged(here: &Place, command: &[&str]) -> (String, Option<i32>) {
+    let mut bridge = Command::new(bridge(here));
+    let output = bridge
+        .current_dir(here.at(""))
+        .args(command)
+        .output()
+        .unwrap();
+    assert_eq!(text(&output.stdout), "");
+    (text(&output.stderr).into(), output.status.code())
+}
+
+/// The number behind the words in a text.
+#[cfg(unix)]
+fn number_after(said: &str, words: &str) -> f64 {
+    let (_, rest) = said
+        .split_once(words)
+        .unwrap_or_else(|| panic!("no {words}: {said}"));
+    let digits = |c: char| !(c.is_ascii_digit() || c == '.');
+    rest.split(digits).next().unwrap().parse().unwrap()
+}
+
+// Verifies: CLI-065, HID-110.
+#[cfg(unix)]
+#[test]
+fn a_bridge_plays_a_map_on_a_device_of_any_maker() {
+    let here = place("bridge", &[("gel", 300.0, 0.0)]);
+    let words = "play --map gel --device pipe --seconds 4 --record session";
+    let mut command = vec![crate::program::PROGRAM];
+    command.extend(words.split(' '));
+    let (said, code) = bridged(&here, &command);
+    assert_eq!(code, Some(0), "{said}");
+    assert_has(&said, "ended as asked|cycles|age of the sample|round trip");
+    // 300 N/m at 4 mm, as deep as the hand goes; it is never at rest there, and a cycle may be late: within 1 %.
+    let largest = number_after(&said, "largest force ");
+    assert!((1.188..=1.2).contains(&largest), "{said}");
+    assert_has(&said, "last force 0.0000 0.0000 N");
+    // What came through the pipe gives the same forces again.
+    let again = here.succeed("play --map gel --replay session");
+    assert!(
+        again.ends_with("all forces the same to the bit\n"),
+        "{again}"
+    );
+}
+
+// Verifies: HID-113.
+#[cfg(unix)]
+#[test]
+fn the_bridge_drops_the_force_of_a_loop_that_falls_silent() {
+    let here = place("silent", &[]);
+    let force = "\\002\\000\\000\\320\\007\\001\\000";
+    // A force that is not enabled; enabled, 2000 counts of 0.5 mN; without the flag; 2000 counts, and silence.
+    let script = format!(
+        "printf '{force}\\001'; sleep 0.2; printf '\\004\\001{force}\\001'; sleep 0.01; printf '{force}\\000'; sleep 0.01; \
+         printf '{force}\\001'; sleep 1"
+    );
+    let (said, code) = bridged(&here, &["sh", "-c", &script]);
+    assert_eq!(code, Some(0), "{said}");
+    let changes = said.lines().filter(|line| line.contains("vendor: force "));
+    let changes: Vec<[f64; 2]> = changes
+        .map(|line| ["force ", "at position "].map(|words| number_after(line, words)))
+        .collect();
+    let forces: Vec<f64> = changes.iter().map(|[force, _]| *force).collect();
+    assert_eq!(forces, [1.0, 0.0, 1.0, 0.0], "{said}");
+    // The first force comes after it was enabled; the watchdog's zero long before the end, some thousand positions later.
+    let (first, last) = (changes[0][1], changes[3][1]);
+    assert!(first > 20.0 && last < 500.0, "{said}");
+    // The loop ends, or sends what is no report, while it plays.
+    for end in ["", "printf '\\007'; sleep 1"] {
+        let script = format!("printf '\\004\\001{force}\\001'; sleep 0.005; {end}");
+        let (said, code) = bridged(&here, &["sh", "-c", &script]);
+        assert_eq!(code, Some(0), "{said}");
+        assert_has(&said, "force 1.0000 N at|last force 0.0000 0.0000 N");
+        let (before, _) = said.split_once(" positions, ").expect(&said);
+        let positions: u32 = before.rsplit(' ').next().unwrap().parse().unwrap();
+        assert!(positions < 500, "{said}");
+    }
+}
+
+// Verifies: HID-112.
+#[test]
+fn an_input_without_a_device_is_refused() {
+    let here = place("no-device", &[("gel", 300.0, 0.0)]);
+    let about = palpate::hid::simulated::PAPER.encode();
+    for (input, code, end) in [
+        (&b""[..], 2, "the input ended where a report must begin"),
+        (b"hello", 2, "report number 104, which must be 3"),
+        (&about[..9], 2, "the input ended within a report"),
+        (&about, 1, "the input ended where a report must begin"),
+    ] {
+        let mut player = here.palpate("play --map gel --device pipe");
+        player
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        let mut player = player.spawn().unwrap();
+        player.stdin.take().unwrap().write_all(input).unwrap();
+        let output = player.wait_with_output().unwrap();
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{said}");
+        assert!(
+            said.trim_end().ends_with(&format!("pipe: read: {end}")),
+            "{said}"
+        );
+        // Either nothing, or stop and the report of zero last.
+        let stopped = [4, 0, 2, 0, 0, 0, 0];
+        assert!(
+            code == 2 && output.stdout.is_empty()
+                || output.stdout.windows(7).any(|bytes| bytes == stopped)
+        );
+    }
+}

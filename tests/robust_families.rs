@@ -4,6 +4,7 @@
 mod families;
 mod fooled_figures;
 mod fooled_table;
+mod paths;
 
 use std::collections::BTreeMap;
 

@@ -70,6 +70,7 @@ pub mod refusal;
 pub mod robust;
 pub mod rows;
 pub mod servo;
+pub mod simulation;
 pub mod text;
 pub mod trace;
 pub mod version;

@@ -9,7 +9,7 @@ use palpate::version::LONG_VERSION;
 use super::error::CliError;
 use super::{
     bank, calibrate, demo, detect, devices, experiment, import, manual, oracle, play,
-    psychophysics, reach, run, solve, study, timing, watch,
+    psychophysics, reach, run, simulate, solve, study, timing, watch,
 };
 
 /// Inclusion probing after Yan, Scott and Fearing (1999): contact forces by finite elements, detection of an inclusion, haptic playback
@@ -53,6 +53,11 @@ pub(super) enum Command {
         after_help = "Example:\n  palpate bank --phantom 4.6 --offsets-mm=-6:6:1 --depths-mm 2.6:6.6:0.5 --probe-depth-mm 4 --laterals-mm=-8:8:1 --out bank.json"
     )]
     Bank(bank::BankArguments),
+    /// Simulates records of a probe that a stage or a hand leads over a gel, to plan an experiment
+    #[command(
+        after_help = "Examples:\n  palpate simulate --phantom 4.6 --depths-mm 4 --noise-sd-n 0.1 > sweep.csv\n  palpate simulate --map map.json --depths-mm 1,2,3,4 --hand 0.05,5,500 --tremor-mm 0.05 --noise-sd-n 0.1 --records 100 --out records"
+    )]
+    Simulate(Box<simulate::SimulateArguments>),
     /// Decides whether a recorded sweep shows an inclusion, using two force maps or a bank; a bank also locates it
     #[command(
         after_help = "Examples:\n  palpate detect sweep.csv --reference none.json --inclusion inclusion.json --depth-mm 4\n  palpate detect sweeps/ --bank bank.json --format csv"

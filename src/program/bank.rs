@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::CliError;
 use super::error::refuse;
-use super::numbers::{List, contact, length, moduli, positions};
+use super::numbers::{List, contact, length, lengths, moduli, positions};
 use super::output::{Envelope, write};
 use super::progress::{resumed_bar, tell_large_mesh, tell_time};
 use super::solve::{TheoryArguments, phantom, tell_large_strain};
@@ -47,9 +47,9 @@ pub struct BankArguments {
     /// Young's moduli of the inclusion in kPa [default: that of the phantom]
     #[arg(long = "stiffnesses-kpa", value_parser = moduli, allow_hyphen_values = true, value_name = "LIST")]
     moduli: Option<List>,
-    /// Depth of the probe in mm
-    #[arg(long = "probe-depth-mm", value_parser = length, allow_hyphen_values = true, value_name = "D")]
-    probe_depth: f64,
+    /// Depth of the probe in mm, or a list of depths for sweeps whose depth varies: a,b,c or from:to:step
+    #[arg(long = "probe-depth-mm", value_parser = lengths, allow_hyphen_values = true, value_name = "LIST")]
+    probe_depths: List,
     /// Lateral positions of the probe in mm: a,b,c or from:to:step
     #[arg(long = "laterals-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
     laterals: List,
@@ -76,7 +76,8 @@ impl BankArguments {
                 phantom.name()
             );
         }
-        let mut plan = BankPlan::new(phantom.clone(), self.probe_depth, &self.laterals)?;
+        let mut plan = BankPlan::new(phantom.clone(), self.probe_depths[0], &self.laterals)?;
+        plan.probe_depths.clone_from(&self.probe_depths);
         plan.positions.clone_from(&self.positions);
         plan.depths.clone_from(&self.depths);
         let (diameters, moduli) = (self.diameters.iter(), self.moduli.iter());
@@ -88,7 +89,8 @@ impl BankArguments {
         // Lists have 10⁴ entries at most: no overflow.
         let inclusions = lists.map(|list| list.len() as f64).iter().product::<f64>();
         let laterals = self.laterals.len();
-        let most = MOST_FORCES / (laterals + PER_MAP);
+        let poses = laterals * self.probe_depths.len();
+        let most = MOST_FORCES / (poses + PER_MAP);
         if inclusions > most as f64 {
             refuse!(
                 "{inclusions} inclusions are too many; at most {most} are possible with {laterals} lateral positions"
@@ -113,7 +115,10 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
     let failed = CliError::fem(phantom.name());
     tell_large_mesh(&phantom, plan.mesh_size).map_err(&failed)?;
     // The reference is one more.
-    let work = [solves.len() + 1, arguments.laterals.len()];
+    let work = [
+        solves.len() + 1,
+        arguments.laterals.len() * arguments.probe_depths.len(),
+    ];
     tell_time(&phantom, plan.mesh_size, work).map_err(&failed)?;
     let (part, finished, bar) = open_part(&plan, arguments, &phantom, &solves)?;
     let mut maps = compute(&plan, phantom.name(), &solves, &part, finished, &bar)?;
@@ -141,7 +146,7 @@ struct Request<'a> {
     depths_m: &'a [f64],
     diameters_m: &'a [f64],
     youngs_moduli_pa: &'a [f64],
-    probe_depth_m: f64,
+    probe_depths_m: &'a [f64],
     laterals_m: &'a [f64],
     mesh_size_m: f64,
     contact: Contact,
@@ -174,7 +179,7 @@ fn open_part(
         depths_m: &plan.depths,
         diameters_m: &plan.diameters,
         youngs_moduli_pa: &plan.moduli,
-        probe_depth_m: arguments.probe_depth,
+        probe_depths_m: &plan.probe_depths,
         laterals_m: &arguments.laterals,
         mesh_size_m: plan.mesh_size,
         contact: plan.contact,

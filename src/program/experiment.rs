@@ -92,6 +92,11 @@ fn plain_name(text: &str) -> Result<String, String> {
 /// Implements: CLI-070, CLI-071, CLI-072.
 pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
     arguments.device.check()?;
+    if arguments.device.is_pipe() {
+        refuse!(
+            "--device pipe takes standard input, where the answers come from; it is for play alone"
+        );
+    }
     if arguments.observer == Observer::Ideal && !arguments.device.is_simulated() {
         refuse!("--observer ideal has no hand; use --device sim");
     }

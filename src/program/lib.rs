@@ -28,6 +28,7 @@ pub mod progress;
 mod psychophysics;
 mod reach;
 mod run;
+mod simulate;
 mod solve;
 mod study;
 mod theories;
@@ -67,6 +68,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             Command::Calibrate(arguments) => calibrate::calibrate(&arguments),
             Command::Bank(arguments) => bank::bank(&arguments),
             Command::Detect(arguments) => detect::detect(&arguments),
+            Command::Simulate(arguments) => simulate::simulate(&arguments),
             Command::Watch(arguments) => watch::watch(&arguments),
             Command::Reach(arguments) => reach::reach(&arguments),
             Command::Study(arguments) => study::study(&arguments),

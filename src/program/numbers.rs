@@ -42,6 +42,20 @@ pub fn positions(text: &str) -> Result<List, String> {
     list(text, -3, "positions", "mm")
 }
 
+/// Reads a list of lengths above 0 in mm, as [`positions`].
+///
+/// Implements: CLI-202.
+///
+/// # Errors
+/// As [`positions`]; a length that is not above 0.
+pub fn lengths(text: &str) -> Result<List, String> {
+    let lengths = list(text, -3, "lengths", "mm")?;
+    match lengths.first() {
+        Some(first) if *first > 0.0 => Ok(lengths),
+        _ => Err(format!("must be {LENGTH}")),
+    }
+}
+
 /// Reads a list of moduli in kPa; gives pascals.
 ///
 /// Implements: CLI-154.
@@ -51,6 +65,8 @@ pub fn positions(text: &str) -> Result<List, String> {
 pub fn moduli(text: &str) -> Result<List, String> {
     list(text, 3, "moduli", "kPa")
 }
+
+const LENGTH: &str = "a length above 0 in mm, such as 2.5";
 
 /// Reads one number and multiplies it by 10^`power`; it must be as `is_right` says, and `must_be` in words.
 ///
@@ -73,8 +89,7 @@ pub fn for_each(numbers: &[f64], count: usize) -> Option<Vec<f64>> {
 /// # Errors
 /// As the functions below, a message that says what the number must be.
 pub fn length(text: &str) -> Result<f64, String> {
-    let must_be = "a length above 0 in mm, such as 2.5";
-    number(text.trim(), -3, |length| length > 0.0, must_be)
+    number(text.trim(), -3, |length| length > 0.0, LENGTH)
 }
 
 /// Reads a length of at least 0 in mm; gives metres.
@@ -97,6 +112,32 @@ pub fn velocity(text: &str) -> Result<f64, String> {
 pub fn newtons(text: &str) -> Result<f64, String> {
     let must_be = "a force above 0 in N, such as 0.1";
     number(text, 0, |force| force > 0.0, must_be)
+}
+
+/// Reads a force of at least 0 in N.
+pub fn newtons_or_zero(text: &str) -> Result<f64, String> {
+    let must_be = "a force of at least 0 in N, such as 0.1";
+    number(text, 0, |force| force >= 0.0, must_be)
+}
+
+/// Reads a number of at least 0.
+pub fn at_least_0(text: &str) -> Result<f64, String> {
+    let must_be = "a number of at least 0, such as 0.5";
+    number(text, 0, |value| value >= 0.0, must_be)
+}
+
+/// Reads `N` numbers of at least 0, with commas between them.
+pub fn several<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let numbers = text.split(',').map(|number| at_least_0(number.trim()));
+    let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
+    let must_be = format!("must be {N} numbers with commas between them");
+    numbers.try_into().map_err(|_: Vec<f64>| must_be)
+}
+
+/// Reads a share of at least 0 and below 1.
+pub fn share_below_1(text: &str) -> Result<f64, String> {
+    let is_right = |share| (0.0..1.0).contains(&share);
+    number(text, 0, is_right, "a number of at least 0 and below 1")
 }
 
 /// Reads a coefficient of friction.

@@ -35,7 +35,12 @@ impl Format {
         answer: &impl Serialize,
         table: impl FnOnce() -> String,
     ) -> Result<(), CliError> {
-        print(&match self {
+        print(&self.text(answer, table))
+    }
+
+    /// An answer as text; `table` makes that for people.
+    pub(super) fn text(self, answer: &impl Serialize, table: impl FnOnce() -> String) -> String {
+        match self {
             Format::Table => table(),
             // Keys are strings, and nothing else could fail.
             Format::Json => serde_json::to_string_pretty(answer).unwrap_or_default() + "\n",
@@ -45,7 +50,7 @@ impl Format {
                 add_lines("", &answer, &mut lines);
                 lines
             }
-        })
+        }
     }
 }
 

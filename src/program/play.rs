@@ -54,7 +54,7 @@ pub struct PlayArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, HID-094, HID-101.
+/// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, HID-094, HID-101, HID-110.
 pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
     if let Some(file) = &arguments.replay {
         return replay(arguments, file);
@@ -141,7 +141,12 @@ fn session(
         scale,
         timing: played.timing.filter(|_| !is_simulated),
     };
-    summary.print(arguments.format)?;
+    let text = summary.text(arguments.format);
+    if arguments.device.is_pipe() {
+        eprint!("{text}"); // standard output is the device
+    } else {
+        print(&text)?;
+    }
     match played.end {
         End::Asked => Ok(()),
         _ => Err(CliError::Check(summary.end)),
@@ -214,10 +219,10 @@ struct Summary {
 }
 
 impl Summary {
-    fn print(&self, format: Format) -> Result<(), CliError> {
+    fn text(&self, format: Format) -> String {
         // With its keys sorted; neither this nor writing to a String fails.
         let sorted = serde_json::to_value(self).unwrap_or_default();
-        format.print(&sorted, || self.render().unwrap_or_default())
+        format.text(&sorted, || self.render().unwrap_or_default())
     }
 }
 

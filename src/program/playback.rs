@@ -1,5 +1,6 @@
 //! Options and loading of maps that `play`, `experiment` and `timing` share.
 
+use std::io::{IsTerminal, stdin, stdout};
 use std::path::Path;
 use std::time::Duration;
 
@@ -8,6 +9,7 @@ use clap::{Args, ValueEnum};
 use super::CliError;
 use super::error::refuse;
 use palpate::force_map::ForceMap;
+use palpate::hid::pipe::PipeDevice;
 use palpate::hid::real::{RealDevice, Wanted};
 use palpate::hid::simulated::{Mechanics, PAPER, SimulatedDevice, Trajectory};
 use palpate::hid::{Capabilities, HapticDevice};
@@ -40,6 +42,9 @@ enum DeviceName {
     Sim,
     /// HID device of this machine; --vid, --pid or --serial select one of several.
     Hid,
+    /// Bridge to a device of another kind, which starts this command: reports of positions in on standard input, of forces out on standard
+    /// output, the summary on standard error.
+    Pipe,
 }
 
 fn number(text: &str) -> Result<u16, String> {
@@ -61,9 +66,14 @@ impl DeviceArguments {
         self.device == DeviceName::Sim
     }
 
-    /// Refuses the ids of a device where the device is simulated.
+    /// Whether the device is at the other end of standard input and output.
+    pub fn is_pipe(&self) -> bool {
+        self.device == DeviceName::Pipe
+    }
+
+    /// Refuses the ids of a device that is no HID device.
     pub fn check(&self) -> Result<(), CliError> {
-        if self.is_simulated() && self.wanted() != Wanted::default() {
+        if self.device != DeviceName::Hid && self.wanted() != Wanted::default() {
             refuse!("--vid, --pid and --serial need --device hid");
         }
         Ok(())
@@ -73,15 +83,23 @@ impl DeviceArguments {
     ///
     /// Implements: CLI-079.
     pub fn open(&self, hand: Trajectory) -> Result<Box<dyn HapticDevice + Send>, Refusal> {
-        if self.is_simulated() {
-            let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Vec::new());
-            return Ok(Box::new(device));
-        }
-        let device = RealDevice::open_within(&self.wanted(), PLUG_IN)?;
-        Ok(Box::new(device))
+        Ok(match self.device {
+            DeviceName::Sim => {
+                let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Vec::new());
+                Box::new(device)
+            }
+            DeviceName::Hid => Box::new(RealDevice::open_within(&self.wanted(), PLUG_IN)?),
+            DeviceName::Pipe => {
+                let remedy = "let a bridge start this command (docs/how-to/devices.md)";
+                Refusal::state("standard input is a terminal", remedy)
+                    .when(stdin().is_terminal())?;
+                let opened = PipeDevice::open(stdin(), stdout());
+                Box::new(opened.map_err(|error| Refusal::state(error, ""))?)
+            }
+        })
     }
 
-    /// The damping of this device by its `capabilities`. A bus takes a period from a sample to its force each way, of which the report's
+    /// The damping of this device by its `capabilities`. A bus or a bridge takes a period from a sample to its force each way, of which the report's
     /// is over when it is read.
     pub fn damping(&self, capabilities: &Capabilities) -> Damping {
         damping(capabilities, u16::from(!self.is_simulated()))

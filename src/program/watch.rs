@@ -33,8 +33,8 @@ const LOOK: Duration = Duration::from_millis(20);
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  palpate watch --bank bank.json --noise-sd-n 0.1 < sweep.csv | tail -1\n\
-    Samples come on standard input, a line each: CSV with the header position_mm,lateral_force_n,normal_force_n, or JSON objects with\n\
-    these keys. Answers are lines of JSON. Exit code 0: answered; 3: undecided when the input ended."
+    Samples come on standard input, a line each: CSV with the header position_mm,lateral_force_n,normal_force_n, and depth_mm if\n\
+    the depth varies, or JSON objects with these keys. Answers are lines of JSON. Exit code 0: answered; 3: undecided when the input ended."
 )]
 pub struct WatchArguments {
     /// Bank of inclusions from 'palpate bank'
@@ -105,10 +105,10 @@ pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
     let (mut answer, mut written) = (None, None::<(Instant, Option<Decision>)>);
     let (stop, lines) = (stop_on_signals()?, lines());
     while let Some(line) = next(&lines, &stop) {
-        let Some((position, lateral, normal)) = samples.sample(&line)? else {
+        let Some(sample) = samples.sample(&line)? else {
             continue;
         };
-        let pushed = watcher.push(position, lateral, normal);
+        let pushed = watcher.push_at(sample.position, sample.depth, sample.lateral, sample.normal);
         let found = pushed.and_then(|()| watcher.answer());
         let found = found.map_err(|error| samples.refused(refused(error)))?;
         let decision = found.decision;

@@ -59,7 +59,10 @@ fn the_bank_finds_an_inclusion_that_was_moved() {
     let error = place().refused(&format!(
         "detect --model exact moved.csv {BY_BANK} --depth-mm 3.1"
     ));
-    assert!(error.contains("3.0 mm, for which the bank is"), "{error}");
+    assert!(
+        error.contains("the bank is for a depth of 3.0 mm, not 3.1 mm"),
+        "{error}"
+    );
     // Beside what is unknown by default, the same place.
     let found = located("moved.csv", "");
     assert_eq!(found["decision"], "inclusion");

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::force_map::Stencil;
+
 /// The points whose polynomial stands for a signal, at most.
 ///
 /// Implements: BNK-030.
@@ -31,13 +33,6 @@ pub(super) struct BankAxis {
     pub points: Vec<f64>,
     /// Nodes in each cell between two points; 1 of an axis with one point.
     pub nodes: usize,
-}
-
-/// Neighbouring points with their weights.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Stencil {
-    pub first: usize,
-    pub weights: Vec<f64>,
 }
 
 impl BankAxis {
@@ -85,19 +80,7 @@ impl BankAxis {
 
     /// At most `most` points around a cell, with the weights of Lagrange's polynomial at `x`.
     pub fn stencil(&self, cell: usize, x: f64, most: usize) -> Stencil {
-        let number = self.points.len().min(most);
-        let first = cell.saturating_sub(most / 2 - 1);
-        let first = first.min(self.points.len() - number);
-        let points = &self.points[first..first + number];
-        let weight = |own: usize| {
-            let others = (0..number).filter(|&other| other != own);
-            let factor = |other: usize| (x - points[other]) / (points[own] - points[other]);
-            others.map(factor).product()
-        };
-        Stencil {
-            first,
-            weights: (0..number).map(weight).collect(),
-        }
+        Stencil::around(&self.points, cell, x, most)
     }
 
     /// The stencils of all nodes of a cell.

@@ -6,11 +6,10 @@ use super::detector::BankDetector;
 use super::information::PlaceBound;
 use super::place::PlacePosterior;
 use super::rates::{CalibratedThreshold, false_alarm_bound, false_alarm_threshold};
-use crate::decimal::mm;
 use crate::detect::nuisance::{NoiseLevel, SubspaceTest};
 use crate::detect::{Decision, DetectError, decide, map_threshold, posterior};
 use crate::force::Force;
-use crate::force_map::{ForceMap, SAME_POSITION};
+use crate::force_map::ForceMap;
 use crate::refusal::Refusal;
 use crate::text::extremes;
 use crate::trace::contact::{RADIUS, is_narrow};
@@ -86,15 +85,15 @@ impl BankSearch<'_> {
     /// Implements: BNK-060, BNK-033, BNK-034, TRC-075.
     pub fn locate(&self, record: &Record) -> Result<Location, Refusal> {
         let located = || {
-            let (question, depth) = (&self.question, self.bank.depth());
-            let found = format!("{} mm", mm(question.depth));
-            let right = format!("{} mm, for which the bank is", mm(depth));
-            let other = Refusal::value("depth of the sweep", found, right);
-            other.when((depth - question.depth).abs() > SAME_POSITION)?;
+            let (question, depth) = (&self.question, self.question.depth);
+            if record.depths().is_none() {
+                self.bank.check_depth(depth)?;
+            }
             let mut design = Design::new(question, self.bank.reference().table(), record)?;
+            let f0 = expected(record, self.bank.base(), depth)?;
             let signal = |map: &ForceMap| {
                 let f1 = expected(record, map.table(), depth)?;
-                Ok(difference(&f1, &design.reference))
+                Ok(difference(&f1, &f0))
             };
             let signals = self.bank.maps().iter().map(signal);
             let signals = signals.collect::<Result<Vec<_>, Refusal>>()?;

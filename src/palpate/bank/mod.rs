@@ -46,7 +46,7 @@ pub use reach::{BesideClass, Reach, Reached, deepest, smallest_diameters};
 pub use watch::{LikeliestPlace, WatchAnswer, WatchQuestion, Watcher};
 
 use crate::decimal::mm;
-use crate::force_map::{ForceMap, SAME_POSITION, check_gel, increasing};
+use crate::force_map::{ForceMap, ForceTable, SAME_POSITION, check_gel, increasing};
 use crate::phantom::{Inclusion, Phantom, Shape};
 use crate::refusal::Refusal;
 
@@ -107,17 +107,18 @@ impl Parameter {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bank {
     reference: ForceMap,
-    depth: f64,
+    /// The forces without inclusion at the depths of the maps.
+    base: ForceTable,
     axes: [Vec<f64>; 4],
     maps: Vec<ForceMap>,
 }
 
 impl Bank {
-    /// The bank of `maps`, in any order, and of `reference`, the gel without inclusion. Each of the maps holds one depth of the
-    /// probe, the same in all, and a phantom with one inclusion; the reference holds that depth, and may hold others.
+    /// The bank of `maps`, in any order, and of `reference`, the gel without inclusion. Each of the maps holds the same depths of the
+    /// probe, and a phantom with one inclusion; the reference holds these depths, and may hold others.
     ///
     /// # Errors
-    /// No maps; a map that is not the reference's gel with one inclusion, at other lateral positions or another depth; maps that are
+    /// No maps; a map that is not the reference's gel with one inclusion, at other lateral positions or other depths; maps that are
     /// no full grid of positions, depths, diameters and moduli; with the number of the map, from 0.
     ///
     /// Implements: BNK-001, BNK-003.
@@ -125,12 +126,11 @@ impl Bank {
         let Some(first) = maps.first() else {
             return Err(Refusal::state("the bank has no maps", "give one at least"));
         };
-        let depth = first.table().depths()[0];
-        reference.table().row(depth)?;
+        let base = reference.table().at_depths(first.table().depths())?;
         let mut points = Vec::with_capacity(maps.len());
         for (number, map) in maps.iter().enumerate() {
             let of_map = |refusal: Refusal| refusal.of_part(&format!("maps[{number}]"));
-            points.push(check_map(&reference, map, depth).map_err(of_map)?);
+            points.push(check_map(&reference, map, base.depths()).map_err(of_map)?);
         }
         let axes = [0, 1, 2, 3].map(|axis| increasing(points.iter().map(|point| point[axis])));
         // The last axis first: the bank's order.
@@ -155,7 +155,7 @@ impl Bank {
         Ok(Bank {
             maps: maps.into_iter().map(|(_, map)| map).collect(),
             reference,
-            depth,
+            base,
             axes,
         })
     }
@@ -165,21 +165,38 @@ impl Bank {
         &self.reference
     }
 
-    /// The depth of the probe, m.
-    pub fn depth(&self) -> f64 {
-        self.depth
+    /// The forces without inclusion at the depths of the maps alone: what a map adds to them is its signal, between its rows too.
+    ///
+    /// Implements: BNK-080.
+    pub fn base(&self) -> &ForceTable {
+        &self.base
     }
 
-    /// Checks that the bank has the forces at this depth of the probe, m.
+    /// The depths of the probe, m, increasing.
+    pub fn probe_depths(&self) -> &[f64] {
+        self.base.depths()
+    }
+
+    /// The greatest depth of the probe, m.
+    pub fn depth(&self) -> f64 {
+        self.probe_depths()[self.probe_depths().len() - 1]
+    }
+
+    /// Checks that the maps have a row at this depth of the probe, m.
     ///
     /// # Errors
-    /// Another depth, with that of the bank.
+    /// Another depth, with those of the bank.
     pub fn check_depth(&self, depth: f64) -> Result<(), Refusal> {
-        let is_other = (depth - self.depth).abs() > SAME_POSITION;
-        let [given, own] = [depth, self.depth].map(mm);
+        let is_own = |own: &f64| (depth - own).abs() <= SAME_POSITION;
+        let own: Vec<String> = self
+            .probe_depths()
+            .iter()
+            .map(|own| mm(*own).to_string())
+            .collect();
+        let (own, given) = (own.join(", "), mm(depth));
         let found = format!("the bank is for a depth of {own} mm, not {given} mm");
         let remedy = format!("give {own}, or another bank");
-        Refusal::state(found, remedy).when(is_other)
+        Refusal::state(found, remedy).when(!self.probe_depths().iter().any(is_own))
     }
 
     /// The values of each of [`Parameter::ALL`], increasing, m or Pa.
@@ -199,7 +216,7 @@ impl Bank {
 }
 
 /// The parameters of the one inclusion of `map`.
-fn check_map(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<[f64; 4], Refusal> {
+fn check_map(reference: &ForceMap, map: &ForceMap, depths: &[f64]) -> Result<[f64; 4], Refusal> {
     check_gel(reference, map)?;
     let Some([inclusion]) = map.phantom().map(Phantom::inclusions) else {
         let found = "its phantom has no inclusion, or several";
@@ -208,12 +225,15 @@ fn check_map(reference: &ForceMap, map: &ForceMap, depth: f64) -> Result<[f64; 4
             "give one, which says what the map is for",
         ));
     };
-    let [only] = map.table().depths() else {
-        let found = format!("it has {} depths of the probe", map.table().depths().len());
-        return Err(Refusal::state(found, "give one"));
-    };
-    let other = Refusal::value("depths_m[0]", only, format!("{depth} as in maps[0]"));
-    other.when((only - depth).abs() > SAME_POSITION)?;
+    let own = map.table().depths();
+    let (found, right) = (own.len(), depths.len());
+    let other = format!("it has {found} depths of the probe");
+    Refusal::state(other, format!("give {right} as in maps[0]")).when(found != right)?;
+    for (row, (own, depth)) in own.iter().zip(depths).enumerate() {
+        let key = format!("depths_m[{row}]");
+        let other = Refusal::value(&key, own, format!("{depth} as in maps[0]"));
+        other.when((own - depth).abs() > SAME_POSITION)?;
+    }
     let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_POSITION;
     let (ours, theirs) = (map.table().laterals(), reference.table().laterals());
     let is_same = ours.len() == theirs.len() && ours.iter().zip(theirs).all(same);

@@ -2,7 +2,7 @@
 
 use super::{Bank, Parameter, axis};
 use crate::fem::{Contact, FemError, Model};
-use crate::force_map::ForceMap;
+use crate::force_map::{ForceMap, SAME_POSITION, increasing};
 use crate::phantom::{Phantom, Shape};
 use crate::refusal::Refusal;
 
@@ -44,8 +44,8 @@ const BESIDE: f64 = 0.3e-3;
 pub struct BankPlan {
     /// The gel with the one inclusion that all hypotheses are made of.
     phantom: Phantom,
-    /// Depth of the probe, m.
-    depth: f64,
+    /// Depths of the probe, m, increasing.
+    pub probe_depths: Vec<f64>,
     /// Lateral positions of the probe, m.
     laterals: Vec<f64>,
     /// x of the inclusion's centre, m.
@@ -88,7 +88,7 @@ impl BankPlan {
         let [positions, depths, diameters, moduli] =
             Parameter::ALL.map(|parameter| vec![parameter.of(inclusion)]);
         Ok(BankPlan {
-            depth,
+            probe_depths: vec![depth],
             laterals: laterals.to_vec(),
             positions,
             depths,
@@ -108,8 +108,9 @@ impl BankPlan {
     ///
     /// Implements: BNK-021, BNK-020.
     pub fn solves(&self) -> Result<Vec<BankSolve>, Refusal> {
-        for &lateral in &self.laterals {
-            self.phantom.check_pose(self.depth, lateral)?;
+        for &depth in &self.probe_depths {
+            let mut poses = self.laterals.iter();
+            poses.try_for_each(|&lateral| self.phantom.check_pose(depth, lateral))?;
         }
         let mirrored = self.laterals.iter().rev().map(|x| 0.0 - x);
         let is_even = mirrored.eq(self.laterals.iter().copied());
@@ -155,21 +156,30 @@ impl BankPlan {
         phantom.map_err(|refusal| refusal.of_part(&of))
     }
 
-    /// The forces without inclusion, at the depth of the probe and at one on either side, where the probe can stand.
+    /// The forces without inclusion, at each depth of the probe and at one on either side, where the probe can stand and no other
+    /// depth of the probe is nearer.
     ///
     /// # Errors
     /// As [`Model::map`].
     ///
-    /// Implements: BNK-020.
+    /// Implements: BNK-020, BNK-081.
     pub fn reference(&self) -> Result<ForceMap, FemError> {
         let phantom = self.phantom.without_inclusions();
-        let above = (self.depth - BESIDE).max(0.5 * self.depth);
-        let mut depths = vec![above, self.depth, self.depth + BESIDE];
-        let stands = |depth| {
+        let stands = |depth: f64| {
             let mut poses = self.laterals.iter();
             poses.all(|&lateral| phantom.check_pose(depth, lateral).is_ok())
         };
-        depths.retain(|&depth| depth == self.depth || stands(depth));
+        let is_nearest = |depth: f64, beside: f64| {
+            let mut others = self.probe_depths.iter().filter(|other| **other != depth);
+            others.all(|other| (beside - other).abs() >= BESIDE - SAME_POSITION)
+        };
+        let around = |&depth: &f64| {
+            let beside = [(depth - BESIDE).max(0.5 * depth), depth + BESIDE];
+            let beside = beside.map(|at| (stands(at) && is_nearest(depth, at)).then_some(at));
+            beside.into_iter().flatten().chain([depth])
+        };
+        let mut depths = increasing(self.probe_depths.iter().flat_map(around));
+        depths.dedup_by(|next, depth| *next - *depth <= SAME_POSITION);
         let model = Model::new(&phantom, self.mesh_size, self.contact)?;
         model.map(&depths, &self.laterals, &|_| ())
     }
@@ -182,7 +192,10 @@ impl BankPlan {
     /// Implements: BNK-020.
     pub fn solve(&self, solve: &BankSolve) -> Result<Vec<ForceMap>, FemError> {
         let model = Model::new(&solve.phantom, self.mesh_size, self.contact)?;
-        let map = model.sweep(self.depth, &self.laterals)?;
+        let map = match self.probe_depths[..] {
+            [depth] => model.sweep(depth, &self.laterals)?,
+            _ => model.map(&self.probe_depths, &self.laterals, &|_| ())?,
+        };
         let image = solve.image.then(|| map.mirror_image()).transpose()?;
         Ok(std::iter::once(map).chain(image).collect())
     }

@@ -11,7 +11,7 @@ use crate::robust::{
     BankHypotheses, Class, GelChanges, RobustDetector, RobustQuestion, RobustSweep,
 };
 use crate::stats::normal;
-use crate::trace::design::{difference, nuisances_of, stacked, whitened};
+use crate::trace::design::{depth_slope, difference, nuisances_of, stacked, whitened};
 use crate::trace::{Record, Unknown, refused};
 
 /// What an inclusion must be found with.
@@ -85,10 +85,10 @@ impl Reach<'_> {
         let positions = self.positions();
         let expected = |map: &ForceMap, depth| map.table().sweep(depth, &positions).map(stacked);
         let f0 = expected(reference, depth)?;
-        let at = |depth| expected(reference, depth);
         let depths = reference.table().depths();
+        let slope = || depth_slope(depths, depth, |depth| expected(reference, depth));
         let samples = positions.len();
-        let nuisances = nuisances_of(self.unknown, depths, depth, (&f0, samples), at)?;
+        let nuisances = nuisances_of(self.unknown, (&f0, samples), slope)?;
         let white = |signal: &[f64]| whitened(signal, samples, self.noise_sd);
         let mut nuisances: Vec<f64> = nuisances.iter().flat_map(|of| white(of)).collect();
         let space = Nuisances::new(&mut nuisances, f0.len()).map_err(refused)?;

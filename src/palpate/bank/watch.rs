@@ -7,12 +7,12 @@ use crate::detect::mixture::mixture_theta;
 use crate::detect::sequential::{Evidence, Sequential, Wald, memory};
 use crate::detect::{Decision, DetectError, posterior};
 use crate::force::Force;
-use crate::force_map::{ForceTable, Place, increasing};
+use crate::force_map::{ForceTable, Place, Stencil, increasing};
 use crate::refusal::Refusal;
 use crate::stats::error::{check_positive, check_probability, check_samples, in_range};
 use crate::trace::contact::LEAST_LEVEL;
-use crate::trace::design::{depth_slope, difference, single_depth, stacked};
-use crate::trace::{Cause, Unknown, refused};
+use crate::trace::design::{self, depth_slope, difference, single_depth, slope, stacked};
+use crate::trace::{Cause, Record, Unknown, refused};
 
 /// −ln of half the rate at which a record that fits is taken for a misfit.
 ///
@@ -48,9 +48,11 @@ pub struct Watcher {
     question: WatchQuestion,
     prior: Vec<f64>,
     points: Vec<[f64; 4]>,
-    laterals: Vec<f64>,
-    /// For each lateral position and channel F_0, ∂F_0/∂d if the depth is unknown, and the signal of each map, over the noise.
-    expected: Vec<f64>,
+    reference: ForceTable,
+    depths: Vec<f64>,
+    /// For each depth of the maps, lateral position and channel F_0, ∂F_0/∂d if the depth is unknown, and the signal of each map, over
+    /// the noise.
+    expected: Vec<Vec<f64>>,
     /// The same at the sample at hand.
     at_sample: Vec<f64>,
     pub(super) found: Sequential<Vec<f64>>,
@@ -71,7 +73,7 @@ pub struct WatchAnswer {
     pub samples: usize,
     /// Samples with a missing number.
     pub missing: usize,
-    /// Samples outside the bank's lateral positions.
+    /// Samples outside the bank's lateral positions or depths.
     pub outside: usize,
     /// Pr(H = 1 | samples), by the mixture.
     pub posterior_h1: f64,
@@ -140,8 +142,10 @@ impl Watcher {
         let unknown: Vec<_> = unknown.filter(|of| question.unknown.contains(of)).collect();
         let nuisances = columns(&unknown);
         let found = Sequential::new(vec![0.0; memory(maps, nuisances)], maps, nuisances);
-        let laterals = bank.reference().table().laterals();
-        let expected = expected(bank, question)?;
+        let reference = bank.reference().table().clone();
+        let depths = bank.probe_depths().iter();
+        let expected = depths.map(|&depth| expected(bank, question, depth));
+        let expected = expected.collect::<Result<Vec<_>, _>>()?;
         Ok(Watcher {
             question: WatchQuestion {
                 unknown,
@@ -149,8 +153,9 @@ impl Watcher {
             },
             prior,
             points: (0..maps).map(|map| bank.point(map)).collect(),
-            at_sample: vec![0.0; expected.len() / (2 * laterals.len())],
-            laterals: laterals.to_vec(),
+            at_sample: vec![0.0; expected[0].len() / (2 * reference.laterals().len())],
+            reference,
+            depths: bank.probe_depths().to_vec(),
             expected,
             found: found.map_err(refused)?,
             samples: 0,
@@ -164,17 +169,34 @@ impl Watcher {
     /// Adds a sample: position (m), lateral force, unless the sensor has none, and normal force (N). A NaN is missing.
     ///
     /// # Errors
-    /// A number that is infinite or a force that is absurd; the sample then does not count.
+    /// A number that is infinite or a force that is absurd; a bank of several depths; the sample then does not count.
     ///
     /// Implements: SEQ-020, SEQ-024.
     pub fn push(&mut self, x: f64, lateral: Option<f64>, normal: f64) -> Result<(), DetectError> {
+        self.push_at(x, None, lateral, normal)
+    }
+
+    /// As [`Watcher::push`], of a sample at a depth of its own (m).
+    ///
+    /// # Errors
+    /// As [`Watcher::push`]; of a bank of several depths, no depth.
+    ///
+    /// Implements: SEQ-030, SEQ-031, SEQ-024.
+    pub fn push_at(
+        &mut self,
+        x: f64,
+        depth: Option<f64>,
+        lateral: Option<f64>,
+        normal: f64,
+    ) -> Result<(), DetectError> {
         let sd = self.question.noise_sd;
         let (lateral, normal) = (lateral.map(|force| force / sd.lateral), normal / sd.normal);
-        let numbers = [x, lateral.unwrap_or(0.0), normal];
+        let numbers = [x, lateral.unwrap_or(0.0), normal, depth.unwrap_or(0.0)];
         let names = [
             "position",
             "lateral force over its noise",
             "normal force over its noise",
+            "depth",
         ];
         for (what, number) in names.into_iter().zip(numbers) {
             let is_right = number.is_nan() || number.abs() <= MOST;
@@ -185,36 +207,70 @@ impl Watcher {
                 "at most 1e50, or NaN where it is missing",
             )?;
         }
+        let is_known = depth.is_some() || self.depths.len() == 1;
+        let needed = "given with each sample, as the bank has several depths of the probe";
+        in_range(is_known, "depth", f64::NAN, needed)?;
         if numbers.iter().any(|number| number.is_nan()) {
             self.missing += 1;
             return Ok(());
         }
-        let Some(place) = Place::within(&self.laterals, x) else {
+        let rows = Stencil::of_rows(&self.depths, depth.unwrap_or(self.depths[0]));
+        let Some(at) = Place::within(self.reference.laterals(), x).zip(rows) else {
             self.outside += 1;
             return Ok(());
         };
+        let own = depth.map_or(Ok(Vec::new()), |depth| self.without(x, depth))?;
         if let Some(lateral) = lateral {
-            self.push_row(place, 0, lateral)?;
+            self.push_row(&at, &own, 0, lateral)?;
         }
-        self.push_row(place, 1, normal)?;
+        self.push_row(&at, &own, 1, normal)?;
         self.contact[0] += normal * self.at_sample[0];
         self.contact[1] += self.at_sample[0] * self.at_sample[0];
         self.samples += 1;
         self.judge()
     }
 
+    /// F_0, and ∂F_0/∂d if the depth is unknown, at a pose (m), N and N/m, lateral first: as of a record of it.
+    ///
+    /// Implements: SEQ-030.
+    fn without(&self, x: f64, depth: f64) -> Result<Vec<Vec<f64>>, DetectError> {
+        let (table, none) = (&self.reference, Force::new(&[0.0][..], &[0.0][..]));
+        let at = || {
+            let record = Record::along("-", &[x], &[depth], none)?;
+            let mut lists = vec![design::expected(&record, table, depth)?];
+            if self.question.unknown.contains(&Unknown::Depth) {
+                lists.extend(slope(&record, table, depth, design::expected)?);
+            }
+            Ok(lists)
+        };
+        // The pose is within the bank, as has been seen.
+        at().map_err(|_: Refusal| DetectError::NoSignal)
+    }
+
     /// Adds the force of one channel, 0 lateral or 1 normal, over its noise.
     ///
     /// Implements: SEQ-002.
-    fn push_row(&mut self, place: Place, channel: usize, force: f64) -> Result<(), DetectError> {
+    fn push_row(
+        &mut self,
+        (place, rows): &(Place, Stencil),
+        own: &[Vec<f64>],
+        channel: usize,
+        force: f64,
+    ) -> Result<(), DetectError> {
         let length = self.at_sample.len();
-        let list = |entry: usize| &self.expected[(2 * entry + channel) * length..][..length];
-        let [a, b] = place.entries.map(list);
-        for ((value, a), b) in self.at_sample.iter_mut().zip(a).zip(b) {
-            *value = (1.0 - place.fraction) * a + place.fraction * b;
+        self.at_sample.fill(0.0);
+        for (weight, table) in rows.weights.iter().zip(&self.expected[rows.first..]) {
+            let list = |entry: usize| &table[(2 * entry + channel) * length..][..length];
+            let [a, b] = place.entries.map(list);
+            for ((value, a), b) in self.at_sample.iter_mut().zip(a).zip(b) {
+                *value += weight * ((1.0 - place.fraction) * a + place.fraction * b);
+            }
         }
+        let own = own.iter().zip(&mut self.at_sample);
+        let sd = self.question.noise_sd.into_array()[channel];
+        own.for_each(|(of, value)| *value = of[channel] / sd);
         let (expected, signals) = self.at_sample.split_at(length - self.points.len());
-        let unit = 1.0 / self.question.noise_sd.into_array()[channel];
+        let unit = 1.0 / sd;
         let (mut nuisances, mut used) = ([0.0; MOST_COLUMNS], 0);
         for &unknown in &self.question.unknown {
             let (at, value) = match unknown {
@@ -361,9 +417,9 @@ fn columns(unknown: &[Unknown]) -> usize {
     unknown.iter().map(of).sum()
 }
 
-/// As [`Watcher::expected`].
-fn expected(bank: &Bank, question: &WatchQuestion) -> Result<Vec<f64>, Refusal> {
-    let (reference, depth) = (bank.reference().table(), bank.depth());
+/// As [`Watcher::expected`], at one depth (m).
+fn expected(bank: &Bank, question: &WatchQuestion, depth: f64) -> Result<Vec<f64>, Refusal> {
+    let reference = bank.reference().table();
     let (laterals, depths) = (reference.laterals(), reference.depths());
     let of = |map: &ForceTable, depth| map.sweep(depth, laterals).map(stacked);
     let f0 = of(reference, depth)?;

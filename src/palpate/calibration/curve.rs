@@ -65,9 +65,8 @@ impl Curve {
     /// Implements: CAL-001.
     pub fn from_csv(text: &str, file: &str, layout: &Layout) -> Result<Curve, Refusal> {
         let read = || {
-            let read =
-                Rows::parse_last_optional::<2>(text, COLUMNS, EXPECTED_HEADER, layout, true)?;
-            let (table, has_times) = read;
+            let read = Rows::parse_optional(text, COLUMNS, 2, EXPECTED_HEADER, layout, true)?;
+            let (table, [.., has_times]) = read;
             let rows = table.rows.iter();
             let column = |of: usize| rows.clone().map(|(_, row)| row[of]).collect::<Vec<_>>();
             let times = has_times.then(|| column(2));

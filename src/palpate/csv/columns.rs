@@ -318,9 +318,14 @@ pub(super) fn find(header: &[&str], column: Column, layout: &Layout) -> Result<F
     Err(format!("no column {}", names.join(" or ")))
 }
 
-/// Whether a field of a header is a name of a column.
+/// Whether a field of a header is a name of a column that may be missing. A depth has its own name alone: what laboratories call a
+/// displacement or an indentation may be another.
+///
+/// Implements: TRC-080.
 pub(super) fn names(field: &str, column: Column) -> bool {
-    let is_name = |names: &&[Named], by| read(field, names, by).is_some();
+    let is_name = |names: &&[Named], by| {
+        (by == By::Name || quantity(names) != "depth") && read(field, names, by).is_some()
+    };
     let ways = [By::Name, By::Synonym, By::Unitless];
     ways.iter()
         .any(|by| column.iter().any(|names| is_name(names, *by)))

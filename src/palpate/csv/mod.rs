@@ -48,34 +48,33 @@ impl<const N: usize> Rows<N> {
         expected: &str,
         layout: &Layout,
     ) -> Result<Self, Refusal> {
-        Rows::read(text, columns, expected, layout)?.complete()
+        layout.check(&columns)?;
+        Rows::read(text, columns.map(Some), expected, layout)?.complete()
     }
 
-    /// As [`Rows::parse_as`], where the header may lack the last of the `M` + 1 columns: its numbers are then 0. Also whether it is there.
-    /// Of samples, those that lack a number, empty or NaN, are left out with a note.
+    /// As [`Rows::parse_as`], where the header may lack all columns but the first `required`: their numbers are then 0. Also whether each
+    /// is there. Of samples, those that lack a number, empty or NaN, are left out with a note.
     ///
     /// # Errors
     /// As [`Rows::parse_as`].
     ///
-    /// Implements: MAP-048, CAL-001, TRC-011, MAP-083.
-    pub fn parse_last_optional<const M: usize>(
+    /// Implements: MAP-048, CAL-001, TRC-011, TRC-080, MAP-083.
+    pub fn parse_optional(
         text: &str,
         columns: [Column; N],
+        required: usize,
         expected: &str,
         layout: &Layout,
         are_samples: bool,
-    ) -> Result<(Self, bool), Refusal> {
-        const { assert!(M + 1 == N) };
-        let last = columns[M];
-        let others: [Column; M] = std::array::from_fn(|at| columns[at]);
-        let is_named = |header: Header<'_, M>| header.fields.iter().any(|of| names(of, last));
-        let header = Header::find(&lines(text, layout), others, layout);
-        let is_there = layout.states(last) || header.is_ok_and(is_named);
-        let read = if is_there {
-            Rows::read(text, columns, expected, layout)?
-        } else {
-            Rows::read(text, others, expected, layout)?.with_zeros()
-        };
+    ) -> Result<(Self, [bool; N]), Refusal> {
+        let must = std::array::from_fn(|at| (at < required).then_some(columns[at]));
+        let header = Header::<N>::find(&lines(text, layout), must, layout);
+        let fields = header.map_or(Vec::new(), |header| header.fields);
+        let is_there = |column| layout.states(column) || fields.iter().any(|of| names(of, column));
+        let is_there = std::array::from_fn(|at| at < required || is_there(columns[at]));
+        let there = std::array::from_fn(|at| is_there[at].then_some(columns[at]));
+        layout.check(&columns)?;
+        let read = Rows::read(text, there, expected, layout)?;
         let rows = if are_samples {
             read.samples()
         } else {
@@ -84,14 +83,13 @@ impl<const N: usize> Rows<N> {
         Ok((rows, is_there))
     }
 
-    /// The table without the rows in which a number is missing.
+    /// The table without the rows in which a number is missing; 0 in place of a column that is none.
     fn read(
         text: &str,
-        columns: [Column; N],
+        columns: [Option<Column>; N],
         expected: &str,
         layout: &Layout,
     ) -> Result<Read<N>, Refusal> {
-        layout.check(&columns)?;
         let lines = lines(text, layout);
         let header = Header::find(&lines, columns, layout);
         let header = header.map_err(|(found, (line, header))| {
@@ -121,7 +119,9 @@ impl<const N: usize> Rows<N> {
         }
         let rows = Rows {
             line: lines[header.at].0,
-            names: header.found.map(|found| found.name),
+            names: header
+                .found
+                .map(|found| found.map_or("", |found| found.name)),
             rows,
             notes,
         };
@@ -153,29 +153,6 @@ impl<const N: usize> Read<N> {
         }
         rows
     }
-
-    /// The table with columns of zeros behind its own.
-    fn with_zeros<const M: usize>(self) -> Read<M> {
-        let Rows {
-            line,
-            names,
-            rows,
-            notes,
-        } = self.rows;
-        let wider = |row: [f64; N]| std::array::from_fn(|at| row.get(at).copied().unwrap_or(0.0));
-        let rows = Rows {
-            line,
-            names: std::array::from_fn(|at| names.get(at).copied().unwrap_or_default()),
-            rows: (rows.into_iter())
-                .map(|(line, row)| (line, wider(row)))
-                .collect(),
-            notes,
-        };
-        Read {
-            rows,
-            missing: self.missing,
-        }
-    }
 }
 
 /// The lines of `text` that say something and are not skipped, with their numbers; at least one.
@@ -198,7 +175,8 @@ struct Header<'a, const N: usize> {
     line: &'a str,
     separator: char,
     fields: Vec<&'a str>,
-    found: [Found; N],
+    /// None of a column that is not there.
+    found: [Option<Found>; N],
 }
 
 impl<'a, const N: usize> Header<'a, N> {
@@ -210,7 +188,7 @@ impl<'a, const N: usize> Header<'a, N> {
     /// Implements: MAP-047.
     fn find(
         lines: &[(usize, &'a str)],
-        columns: [Column; N],
+        columns: [Option<Column>; N],
         layout: &Layout,
     ) -> Result<Header<'a, N>, (String, (usize, &'a str))> {
         let mut named = None;
@@ -227,7 +205,8 @@ impl<'a, const N: usize> Header<'a, N> {
         }
         let first = || Header::of(lines, 0, columns, layout);
         let header = named.map_or_else(|| first().map_err(|found| (found, lines[0])), Ok)?;
-        match header.found.iter().find(|found| found.by == By::Unitless) {
+        let mut found = header.found.iter().flatten();
+        match found.find(|found| found.by == By::Unitless) {
             None => Ok(header),
             Some(open) => {
                 let found = format!("column {} has no unit", open.place + 1);
@@ -242,7 +221,7 @@ impl<'a, const N: usize> Header<'a, N> {
     fn of(
         lines: &[(usize, &'a str)],
         at: usize,
-        columns: [Column; N],
+        columns: [Option<Column>; N],
         layout: &Layout,
     ) -> Result<Header<'a, N>, String> {
         let line = lines[at].1;
@@ -251,12 +230,12 @@ impl<'a, const N: usize> Header<'a, N> {
         let separator = separators.max_by_key(|&separator| split(line, separator).count());
         let separator = separator.unwrap_or(',');
         let fields: Vec<&str> = split(line, separator).collect();
-        let found = columns.map(|column| find(&fields, column, layout));
-        let found: Vec<Found> = found.into_iter().collect::<Result<_, _>>()?;
-        let twice = (1..N).find(|&at| found[..at].iter().any(|of| of.place == found[at].place));
-        if let Some(twice) = twice {
-            let place = found[twice].place + 1;
-            return Err(format!("column {place} for two quantities"));
+        let found = columns.map(|column| column.map(|of| find(&fields, of, layout)).transpose());
+        let found: Vec<Option<Found>> = found.into_iter().collect::<Result<_, _>>()?;
+        let mut places: Vec<usize> = found.iter().flatten().map(|of| of.place).collect();
+        places.sort_unstable();
+        if let Some(twice) = places.windows(2).find(|pair| pair[0] == pair[1]) {
+            return Err(format!("column {} for two quantities", twice[0] + 1));
         }
         // There are as many as columns.
         let found = std::array::from_fn(|at| found[at]);
@@ -287,7 +266,7 @@ impl<'a, const N: usize> Header<'a, N> {
             let line = lines[self.at + 1].0;
             notes.push(format!("line {line} gives the units"));
         }
-        for found in self.found.iter().filter(|found| found.by == By::Synonym) {
+        for found in (self.found.iter().flatten()).filter(|found| found.by == By::Synonym) {
             let name = shortened(self.fields[found.place]);
             notes.push(format!("column {name:?} is read as {}", found.name));
         }
@@ -298,7 +277,12 @@ impl<'a, const N: usize> Header<'a, N> {
     ///
     /// Implements: MAP-044.
     fn unused(&self) -> Option<String> {
-        let is_used = |place| self.found.iter().any(|found| found.place == place);
+        let is_used = |place| {
+            self.found
+                .iter()
+                .flatten()
+                .any(|found| found.place == place)
+        };
         // A first column without a name numbers the rows.
         let others = (0..).zip(&self.fields).filter(|&(place, name)| {
             let is_index = (place, *name) == (0, "");
@@ -336,7 +320,7 @@ impl<'a, const N: usize> Header<'a, N> {
             let field = fields[found.place];
             field.is_empty() || field.eq_ignore_ascii_case("nan")
         };
-        fields.len() == self.fields.len() && self.found.iter().any(is_missing)
+        fields.len() == self.fields.len() && self.found.iter().flatten().any(is_missing)
     }
 
     /// The numbers of a row, in SI; the first decimal mark that is there sets that of the file.
@@ -348,6 +332,7 @@ impl<'a, const N: usize> Header<'a, N> {
         )?;
         let mut numbers = [0.0; N];
         for (number, found) in numbers.iter_mut().zip(self.found) {
+            let Some(found) = found else { continue };
             let field = fields[found.place];
             let read = decimal(field, found.power, mark).map(|read| read * found.factor);
             *number = read.filter(|read| read.is_finite()).ok_or_else(|| {
@@ -365,11 +350,15 @@ impl<'a, const N: usize> Header<'a, N> {
 
 /// The columns in the units of a row, if it is one of units.
 fn in_units<const N: usize>(
-    mut found: [Found; N],
-    columns: [Column; N],
+    mut found: [Option<Found>; N],
+    columns: [Option<Column>; N],
     units: &[&str],
-) -> Option<[Found; N]> {
-    for (found, column) in found.iter_mut().zip(columns) {
+) -> Option<[Option<Found>; N]> {
+    for (found, column) in found
+        .iter_mut()
+        .flatten()
+        .zip(columns.into_iter().flatten())
+    {
         *found = found.in_unit(column, units.get(found.place)?)?;
     }
     Some(found)
@@ -479,10 +468,10 @@ mod tests {
         let text = "t_s,force_n,note\n1,,a\n2,5,\n3,NaN,c\n,4,d\n6,7,nan\n";
         let layout = Layout::default();
         let read = |text: &str, are_samples| {
-            Rows::parse_last_optional::<1>(text, COLUMNS, "", &layout, are_samples)
+            Rows::parse_optional(text, COLUMNS, 1, "", &layout, are_samples)
         };
         let (read_all, is_there) = read(text, true).unwrap();
-        assert!(is_there);
+        assert_eq!(is_there, [true; 2]);
         assert_eq!(read_all.rows, [(3, [2.0, 5.0]), (6, [6.0, 7.0])]);
         let notes = [
             "column \"note\" is not used",

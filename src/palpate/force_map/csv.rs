@@ -133,8 +133,8 @@ impl ForceTable {
 ///
 /// Implements: MAP-083.
 fn read(text: &str, layout: &Layout, are_samples: bool) -> Result<(Rows<4>, bool), Refusal> {
-    let read = Rows::parse_last_optional::<3>(text, COLUMNS, EXPECTED_HEADER, layout, are_samples)?;
-    let (mut rows, has_lateral) = read;
+    let read = Rows::parse_optional(text, COLUMNS, 3, EXPECTED_HEADER, layout, are_samples)?;
+    let (mut rows, [.., has_lateral]) = read;
     if !has_lateral {
         let note = "there is no lateral force: the map is of the normal force alone";
         rows.notes.push(note.into());

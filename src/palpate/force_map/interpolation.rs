@@ -49,6 +49,61 @@ impl Place {
     }
 }
 
+/// Neighbouring points of an axis, with their weights.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Stencil {
+    pub first: usize,
+    pub weights: Vec<f64>,
+}
+
+impl Stencil {
+    /// At most `most` `points` around a cell, with the weights of Lagrange's polynomial at `x`.
+    ///
+    /// Implements: BNK-030, MAP-090.
+    pub fn around(points: &[f64], cell: usize, x: f64, most: usize) -> Stencil {
+        let number = points.len().min(most);
+        let first = cell.saturating_sub(most / 2 - 1);
+        let first = first.min(points.len() - number);
+        let points = &points[first..first + number];
+        let weight = |own: usize| {
+            let others = (0..number).filter(|&other| other != own);
+            let factor = |other: usize| (x - points[other]) / (points[own] - points[other]);
+            others.map(factor).product()
+        };
+        Stencil {
+            first,
+            weights: (0..number).map(weight).collect(),
+        }
+    }
+
+    /// The rows that stand for a `depth` (m), within [`SAME_POSITION`] of one that row alone. `None` beyond the ends.
+    ///
+    /// Implements: MAP-090.
+    pub fn of_rows(depths: &[f64], depth: f64) -> Option<Stencil> {
+        let Place { entries, .. } = Place::within(depths, depth)?;
+        if entries[0] == entries[1] {
+            let (first, weights) = (entries[0], vec![1.0]);
+            return Some(Stencil { first, weights });
+        }
+        Some(Stencil::around(depths, entries[0], depth, ROWS))
+    }
+
+    /// Σ of the weights times the values of the points.
+    pub fn blend(&self, value: impl Fn(usize) -> f64) -> f64 {
+        let values = (self.first..).map(value);
+        self.weights
+            .iter()
+            .zip(values)
+            .map(|(w, value)| w * value)
+            .sum()
+    }
+}
+
+/// The rows whose polynomial stands for the forces between them, at most.
+///
+/// Implements: MAP-090, MAP-091.
+const ROWS: usize = 4;
+
 impl ForceTable {
     /// The force on the probe at a pose (m), N, by the bilinear form of its cell; outside the table, by that of the
     /// nearest border cell, continued.
@@ -93,18 +148,8 @@ impl ForceTable {
     ///
     /// Implements: TRC-021, TRC-024.
     pub fn sweep(&self, depth: f64, positions: &[f64]) -> Result<Force<Vec<f64>>, Refusal> {
-        let place = |name: &str, axis: &[f64], position: f64| {
-            let place = Place::within(axis, position);
-            place.ok_or_else(|| {
-                let [position, first, last] = [position, axis[0], axis[axis.len() - 1]].map(mm);
-                let map = format!("the map, which has {first} to {last} mm");
-                Refusal::state(format!("{name} {position} mm is outside {map}"), "")
-            })
-        };
-        let row = place("depth", self.depths(), depth)?;
-        let column = |&lateral: &f64| place("lateral position", self.laterals(), lateral);
-        let columns = positions.iter().map(column);
-        let columns = columns.collect::<Result<Vec<_>, _>>()?;
+        let row = placed("depth", self.depths(), depth, Place::within)?;
+        let columns = self.columns(positions)?;
         let along = |matrix: &Matrix| {
             let force =
                 |column: &Place| column.blend(|column| row.blend(|row| matrix.row(row)[column]));
@@ -115,6 +160,53 @@ impl ForceTable {
             normal: along(self.normal()),
         })
     }
+
+    /// The forces on the probe along a path, at each of `positions` (m) at its own of `depths` (m), N: on the polynomial through the four
+    /// nearest rows, linear in the position between two columns. The rest is as in [`ForceTable::sweep`].
+    ///
+    /// # Errors
+    /// As [`ForceTable::sweep`].
+    ///
+    /// Implements: MAP-090, TRC-024.
+    pub fn path(&self, depths: &[f64], positions: &[f64]) -> Result<Force<Vec<f64>>, Refusal> {
+        let row = |&depth: &f64| placed("depth", self.depths(), depth, Stencil::of_rows);
+        let rows = depths.iter().map(row).collect::<Result<Vec<_>, _>>()?;
+        let columns = self.columns(positions)?;
+        let along = |matrix: &Matrix| {
+            let places = columns.iter().zip(&rows);
+            let force = |(column, rows): (&Place, &Stencil)| {
+                column.blend(|column| rows.blend(|row| matrix.row(row)[column]))
+            };
+            places.map(force).collect()
+        };
+        Ok(Force {
+            lateral: self.lateral().map_or(Vec::new(), along),
+            normal: along(self.normal()),
+        })
+    }
+
+    /// The places of `positions` between the columns.
+    fn columns(&self, positions: &[f64]) -> Result<Vec<Place>, Refusal> {
+        let column = |&x: &f64| placed("lateral position", self.laterals(), x, Place::within);
+        positions.iter().map(column).collect()
+    }
+}
+
+/// The place of a position (m) on an axis.
+///
+/// # Errors
+/// It has none.
+fn placed<P>(
+    name: &str,
+    axis: &[f64],
+    position: f64,
+    find: impl Fn(&[f64], f64) -> Option<P>,
+) -> Result<P, Refusal> {
+    find(axis, position).ok_or_else(|| {
+        let [position, first, last] = [position, axis[0], axis[axis.len() - 1]].map(mm);
+        let map = format!("the map, which has {first} to {last} mm");
+        Refusal::state(format!("{name} {position} mm is outside {map}"), "")
+    })
 }
 
 /// The entry of `matrix` at a pose (m), by the bilinear form of its cell; outside the axes (m, at

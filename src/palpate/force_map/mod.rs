@@ -45,8 +45,8 @@ use serde::{Deserialize, Serialize};
 
 pub use certificate::{Certificate, Discretization, SmallestDet};
 pub use grid::Gridded;
-pub(crate) use interpolation::Place;
 pub use interpolation::interpolate;
+pub(crate) use interpolation::{Place, Stencil};
 pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use pair::Hypotheses;
 pub(crate) use pair::check_gel;

@@ -258,6 +258,22 @@ impl ForceTable {
         Ok(self.both()?.map(|force| force.row(row)))
     }
 
+    /// The rows at stored `depths` (m), which increase.
+    ///
+    /// # Errors
+    /// As [`ForceTable::row`].
+    pub(crate) fn at_depths(&self, depths: &[f64]) -> Result<ForceTable, Refusal> {
+        let rows = depths.iter().map(|&depth| self.row(depth));
+        let rows = rows.collect::<Result<Vec<_>, _>>()?;
+        let matrix = |of: fn(&Force<&[f64]>) -> Vec<f64>| Matrix {
+            columns: self.laterals.len(),
+            values: rows.iter().flat_map(of).collect(),
+        };
+        let lateral = matrix(|row| row.lateral.to_vec());
+        let forces = Force::new(lateral, matrix(|row| row.normal.to_vec()));
+        ForceTable::new(depths.to_vec(), self.laterals.clone(), forces)
+    }
+
     /// This table minus `reference`, pose by pose: with the map of a phantom and the map of the
     /// empty one, the signal F₁ − F₀ of the paper's §2. Of the normal force alone if either has no other.
     ///

@@ -1,7 +1,7 @@
 //! What the loop needs of a haptic device, real or simulated.
 
 use std::fmt;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::{Capabilities, Control, ForceReport, InvalidReport, PositionReport};
 
@@ -93,6 +93,17 @@ impl<D: HapticDevice + ?Sized> HapticDevice for Box<D> {
     fn now(&self) -> Duration {
         (**self).now()
     }
+}
+
+/// Throws away the reports of some time: those that were made before the device was enabled may tell of a fault that is cleared.
+///
+/// Implements: HID-033.
+pub(super) fn pass_over(device: &mut impl HapticDevice, time: Duration) -> Result<(), DeviceError> {
+    let began = Instant::now();
+    while let Some(left) = time.checked_sub(began.elapsed()) {
+        device.read(left)?;
+    }
+    Ok(())
 }
 
 /// What a read brought.

@@ -8,10 +8,12 @@
 //! | `recording.rs` | a session in a file that plays again to the bit |
 //! | `supervise.rs` | the servo thread and its supervisor |
 //! | `real/` | a device on the system's HID stack |
+//! | `pipe.rs` | a device behind a bridge in any language, over a pipe |
 //! | `timing.rs` | how long the cycles take on this machine |
 //! | `simulated/` | a device and a hand on a virtual clock, with faults by script |
 
 mod device;
+pub mod pipe;
 pub mod real;
 mod recording;
 mod session;

@@ -146,8 +146,18 @@ pub struct Undisturbed {
     pub support: Vec<Vec<f64>>,
     /// Positions in the order of time, as distances from the beginning, m.
     pub travelled: Vec<f64>,
-    /// The standard deviation of the depth, and the radius of the probe, m.
-    pub depth_sd: f64,
+    /// From −1 to 1 over the place of all passes, and half its width, m.
+    pub u: Vec<f64>,
+    pub half: f64,
+    /// What the depth of each sample adds to the force at the mean depth, N; nothing where the depth is one.
+    pub uneven: Vec<f64>,
+    /// The normal force of each sample over that at the mean depth.
+    pub share: Vec<f64>,
+    /// What the zero of measured depths adds, and their independent errors, N; nothing where there is none.
+    pub zero_error: Vec<f64>,
+    pub depth_noise: Vec<f64>,
+    /// The standard deviation of the depth of each sample, and the radius of the probe, m.
+    pub depth_sd: Vec<f64>,
     pub radius: f64,
     /// Whether the sensor was set to zero on the gel.
     pub is_zeroed: bool,
@@ -273,7 +283,9 @@ impl<'a> Disturbances<'a> {
         }
     }
 
-    /// Σ of what may be in every class: offset, drift and gain.
+    /// Σ of what may be in every class: offset, drift and gain; errors of depths that were measured.
+    ///
+    /// Implements: ROB-082.
     pub fn always(&self) -> Covariance {
         let offset = if self.sweep.is_zeroed { ZEROED } else { OFFSET };
         let both = |size: f64, of: &dyn Fn(usize) -> f64| {
@@ -286,7 +298,13 @@ impl<'a> Disturbances<'a> {
         // So that a record without noise has a density too.
         let count = self.modes.count();
         let rest = DMatrix::identity(count, count);
-        let rest = self.rest(&rest, ROUNDING * ROUNDING, ROUNDING * ROUNDING);
+        let mut rest = self.rest(&rest, ROUNDING * ROUNDING, ROUNDING * ROUNDING);
+        if !self.sweep.zero_error.is_empty() {
+            vectors.push(self.stacked(&self.sweep.zero_error, |_| 1.0));
+        }
+        if !self.sweep.depth_noise.is_empty() {
+            rest.rest += self.modes.of_errors(channels(&self.sweep.depth_noise));
+        }
         Covariance { vectors, ..rest }
     }
 
@@ -322,7 +340,7 @@ impl<'a> Disturbances<'a> {
             }
             Part::Gel => {
                 let mut vectors: Vec<_> = all(&sweep.gel);
-                vectors.push(self.stacked(&sweep.slope, |_| sweep.depth_sd));
+                vectors.push(self.stacked(&sweep.slope, |at| sweep.depth_sd[at]));
                 of(vectors)
             }
             Part::Support => of(all(&sweep.support)),
@@ -359,12 +377,11 @@ impl<'a> Disturbances<'a> {
         let (sweep, samples) = (self.sweep, self.modes.samples());
         let Force { lateral, normal } = channels(&sweep.forces);
         let size = CURVES[number] * sweep.radius;
-        let half = 0.5 * (sweep.travelled[samples - 1] - sweep.travelled[0]).abs();
         let value = |at: usize| {
             let (sample, channel) = (at % samples, at / samples);
-            let u = self.modes.u[sample];
+            let u = sweep.u[sample];
             let slope = if is_surface {
-                slope(number, u) / half
+                slope(number, u) / sweep.half
             } else {
                 0.0
             };
@@ -427,7 +444,8 @@ fn kernel(modes: &Modes, sweep: &Undisturbed, lengths: &[f64]) -> DMatrix<f64> {
     modes.covariance(|i, j| {
         let apart = sweep.travelled[i] - sweep.travelled[j];
         let kernel = |square: &f64| libm::exp(-0.5 * apart * apart / square);
-        squares.iter().map(kernel).sum::<f64>() / squares.len() as f64
+        let kernel = squares.iter().map(kernel).sum::<f64>() / squares.len() as f64;
+        sweep.share[i] * sweep.share[j] * kernel
     })
 }
 

@@ -10,9 +10,10 @@ use super::expected;
 use crate::bank::MESH_SIZE;
 use crate::fem::{Contact, FemError, Model};
 use crate::file;
-use crate::force_map::{ForceMap, ForceTable};
+use crate::force_map::{ForceMap, ForceTable, SAME_POSITION};
 use crate::phantom::{Phantom, PhantomParts, Support};
 use crate::refusal::Refusal;
+use crate::text::extremes;
 use crate::trace::Record;
 use crate::trace::design::difference;
 
@@ -148,8 +149,9 @@ pub struct GelChange {
 /// The finest mesh, over the radius of the probe: a change is needed to a tenth of itself.
 const COARSE: f64 = 0.154;
 
-/// Changes are computed at about so many lateral positions.
+/// Changes are computed at about so many lateral positions, and depths.
 const MOST_LATERALS: usize = 40;
+const MOST_DEPTHS: usize = 8;
 
 /// The walls, and the floor, slide.
 const SUPPORTS: [fn(&mut PhantomParts); 2] = [
@@ -188,23 +190,63 @@ impl GelChanges {
         depth: f64,
         uncertainty: &GelUncertainty,
     ) -> Result<Option<GelChanges>, FemError> {
+        GelChanges::over(reference, &[depth], uncertainty)
+    }
+
+    /// As [`GelChanges::new`], at the rows of `reference` that the depths of the samples of `records` are between.
+    ///
+    /// # Errors
+    /// As [`Model::map`].
+    ///
+    /// Implements: ROB-080.
+    pub fn along(
+        reference: &ForceMap,
+        records: &[&Record],
+        uncertainty: &GelUncertainty,
+    ) -> Result<Option<GelChanges>, FemError> {
+        let own = records
+            .iter()
+            .flat_map(|record| record.depths().into_iter().flatten());
+        let [least, most] = extremes(own.copied()).unwrap_or_default();
+        let rows = reference.table().depths();
+        let first = rows.partition_point(|row| *row <= least + SAME_POSITION);
+        let last = rows.partition_point(|row| *row < most - SAME_POSITION);
+        let rows = &rows[first.saturating_sub(1)..(last + 1).min(rows.len())];
+        GelChanges::over(reference, &thinned(rows, MOST_DEPTHS), uncertainty)
+    }
+
+    /// As [`GelChanges::new`], at all `depths` (m, increasing) under samples with depths of their own.
+    ///
+    /// # Errors
+    /// As [`Model::map`].
+    ///
+    /// Implements: ROB-080.
+    pub fn over(
+        reference: &ForceMap,
+        depths: &[f64],
+        uncertainty: &GelUncertainty,
+    ) -> Result<Option<GelChanges>, FemError> {
         let Some(phantom) = reference.phantom().map(Phantom::without_inclusions) else {
             return Ok(None);
         };
         let certificate = reference.certificate();
         let mesh_size = certificate.map_or(MESH_SIZE, |of| of.mesh_size);
         let mesh_size = f64::max(mesh_size, COARSE * phantom.probe().radius);
-        let laterals = thinned(reference.table().laterals());
-        let mut sides = sides(&phantom, depth, &laterals, uncertainty);
+        let laterals = thinned(reference.table().laterals(), MOST_LATERALS);
+        let mut sides = sides(&phantom, depths, &laterals, uncertainty);
         let gels = sides.len();
         sides.extend(SUPPORTS.iter().filter_map(|slide| {
-            let slid = allowed(&phantom, depth, &laterals, slide)?;
+            let slid = allowed(&phantom, depths, &laterals, slide)?;
             let share = 0.01 * uncertainty.support_percent;
             (share > 0.0).then(|| (phantom.clone(), slid, share))
         }));
         let solved = |phantom: &Phantom| -> Result<ForceTable, FemError> {
             let model = Model::new(phantom, mesh_size, Contact::default())?;
-            Ok(model.sweep(depth, &laterals)?.table().clone())
+            let map = match depths {
+                [depth] => model.sweep(*depth, &laterals)?,
+                _ => model.map(depths, &laterals, &|_| ())?,
+            };
+            Ok(map.table().clone())
         };
         let change = |(from, to, share): &Sides| {
             let (from, to) = rayon::join(|| solved(from), || solved(to));
@@ -229,13 +271,15 @@ impl GelChanges {
 /// `phantom` with a change, if the probe can be there.
 fn allowed(
     phantom: &Phantom,
-    depth: f64,
+    depths: &[f64],
     laterals: &[f64],
     change: impl Fn(&mut PhantomParts),
 ) -> Option<Phantom> {
     let changed = phantom.changed(change).ok()?;
-    let mut poses = laterals.iter();
-    let stands = poses.all(|&x| changed.check_pose(depth, x).is_ok());
+    let mut poses = depths
+        .iter()
+        .flat_map(|depth| laterals.iter().map(move |x| (depth, x)));
+    let stands = poses.all(|(&depth, &x)| changed.check_pose(depth, x).is_ok());
     stands.then_some(changed)
 }
 
@@ -243,7 +287,7 @@ fn allowed(
 /// changes. A smaller one has its share.
 fn sides(
     phantom: &Phantom,
-    depth: f64,
+    depths: &[f64],
     laterals: &[f64],
     uncertainty: &GelUncertainty,
 ) -> Vec<Sides> {
@@ -251,7 +295,7 @@ fn sides(
     let sizes = GelUncertainty::default().percents();
     let side = |((change, (_, percent)), (_, size)): (_, (_, f64))| {
         let change: &fn(&mut PhantomParts, f64) = change;
-        let at = |by: f64| allowed(phantom, depth, laterals, |gel| change(gel, by));
+        let at = |by: f64| allowed(phantom, depths, laterals, |gel| change(gel, by));
         let [less, more] = [-0.01, 0.01].map(|sign| at(sign * size));
         let own = || phantom.clone();
         let share = percent / size;
@@ -267,12 +311,12 @@ fn sides(
     uncertain.filter_map(side).collect()
 }
 
-/// At most some of the lateral positions, both ends among them: changes are smooth.
-fn thinned(laterals: &[f64]) -> Vec<f64> {
-    let stride = laterals.len().div_ceil(MOST_LATERALS).max(1);
-    let last = laterals.len() - 1;
+/// At most some of the entries of an axis, both ends among them: changes are smooth.
+fn thinned(axis: &[f64], most: usize) -> Vec<f64> {
+    let stride = axis.len().div_ceil(most).max(1);
+    let last = axis.len() - 1;
     let kept = (0..last).step_by(stride).chain([last]);
-    kept.map(|at| laterals[at]).collect()
+    kept.map(|at| axis[at]).collect()
 }
 
 impl GelChange {

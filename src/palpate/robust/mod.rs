@@ -66,14 +66,15 @@ pub struct RobustQuestion<'a> {
 pub const AMPLITUDE: f64 = 0.4;
 const AMPLITUDE_OF_DIAMETERS: f64 = 0.15;
 
-/// One sweep of the place in question, or a reference sweep of the same gel.
+/// One sweep of the place in question, or a reference sweep of the same gel. A record whose samples have depths of their own is the
+/// sweeps that are its [passes](Record::passes).
 #[derive(Debug, Clone, Copy)]
 pub struct RobustSweep<'a> {
     /// The forces.
     pub record: &'a Record,
-    /// Its depth, m.
+    /// Its depth, m, if its samples have none of their own.
     pub depth: f64,
-    /// The gels beside that of the maps at this depth; none of measured maps.
+    /// The gels beside that of the maps at these depths; none of measured maps.
     pub changes: Option<&'a GelChanges>,
     /// Whether it is over another place of the gel, where there is no inclusion.
     pub is_reference: bool,
@@ -225,8 +226,10 @@ impl RobustQuestion<'_> {
             // Whether it is one.
             mixture_theta(&vec![0.0; bank.maps().len()], prior).map_err(refused)?;
         }
-        let mut depths = sweeps.iter().map(|sweep| sweep.depth);
-        depths.try_for_each(|depth| bank.check_depth(depth))?;
+        let mut even = sweeps
+            .iter()
+            .filter(|sweep| sweep.record.depths().is_none());
+        even.try_for_each(|sweep| bank.check_depth(sweep.depth))?;
         let hypotheses = BankHypotheses::new(bank, prior);
         let signals = hypotheses.signals(sweeps)?;
         let without = bank.reference().table();
@@ -235,7 +238,7 @@ impl RobustQuestion<'_> {
     }
 }
 
-/// The forces that `map` expects of `record` at `depth` (m), N, stacked; lateral ones of 0 where the map has none, which then do not
+/// The forces that `map` expects of `record`, N, stacked; lateral ones of 0 where the map has none, which then do not
 /// count.
 ///
 /// # Errors

@@ -90,9 +90,7 @@ impl Modes {
         let samples = positions.len();
         let (first, last) = (positions[0], positions[samples - 1]);
         let width = f64::max(last - first, f64::MIN_POSITIVE);
-        let u: Vec<f64> = (positions.iter())
-            .map(|x| (2.0 * (x - first) / width - 1.0).clamp(-1.0, 1.0))
-            .collect();
+        let u = along(positions, [first, last]);
         let wanted = libm::ceil(width / (radius * MODE));
         let most = match noise_is_stated {
             true => MOST_MODES_BESIDE_NOISE,
@@ -164,6 +162,20 @@ impl Modes {
         self.basis.tr_mul(&(kernel * &self.basis))
     }
 
+    /// The covariance of the modes of errors, each of one sample and common to both channels, of these standard deviations.
+    pub fn of_errors(&self, sd: Force<&[f64]>) -> DMatrix<f64> {
+        let scaled = |sd: &[f64]| {
+            let of = |mode, sample: usize| sd[sample] * self.basis[(sample, mode)];
+            DMatrix::from_fn(self.count(), self.samples(), of)
+        };
+        let [lateral, normal] = sd.map(scaled).into_array();
+        let (count, samples) = lateral.shape();
+        let mut both = DMatrix::zeros(2 * count, samples);
+        both.rows_mut(0, count).copy_from(&lateral);
+        both.rows_mut(count, count).copy_from(&normal);
+        &both * both.transpose()
+    }
+
     /// The series of a channel with these amplitudes.
     pub fn series(&self, amplitudes: &DVector<f64>) -> DVector<f64> {
         &self.basis * amplitudes
@@ -219,6 +231,13 @@ impl Modes {
             variance: (1..samples).map(at).sum::<f64>() / (samples - 1) as f64,
         }
     }
+}
+
+/// From −1 to 1 between two positions, m.
+pub fn along(positions: &[f64], [first, last]: [f64; 2]) -> Vec<f64> {
+    let width = f64::max(last - first, f64::MIN_POSITIVE);
+    let at = |x: &f64| (2.0 * (x - first) / width - 1.0).clamp(-1.0, 1.0);
+    positions.iter().map(at).collect()
 }
 
 /// The frequency of a mode of so many samples, in radians a sample.

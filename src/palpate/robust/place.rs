@@ -95,7 +95,7 @@ impl<'a> BankHypotheses<'a> {
     /// Samples outside the bank.
     pub fn signals(&self, sweeps: &[RobustSweep<'_>]) -> Result<Vec<RobustSignal>, Refusal> {
         let at = |sweep: &RobustSweep<'_>| {
-            let none = sweep.expected(self.bank.reference().table())?;
+            let none = sweep.expected(self.bank.base())?;
             let maps = self.bank.maps().iter();
             let signal = |map: &ForceMap| sweep.signal(map.table(), &none);
             maps.map(signal).collect::<Result<Vec<_>, Refusal>>()

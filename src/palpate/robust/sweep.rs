@@ -5,14 +5,21 @@ use nalgebra::DVector;
 use super::classes::Undisturbed;
 use super::gates;
 use super::gel::{GelChange, GelUncertainty};
-use super::modes::{Modes, Spectrum};
+use super::modes::{Modes, Spectrum, along};
 use super::{RobustQuestion, RobustSweep, channels, expected};
 use crate::force::Force;
-use crate::force_map::ForceTable;
+use crate::force_map::{ForceMap, ForceTable};
 use crate::refusal::Refusal;
-use crate::trace::Cause;
 use crate::trace::contact::{RADIUS, in_air, is_narrow, level};
-use crate::trace::design::depth_slope;
+use crate::trace::design::{difference, slope};
+use crate::trace::{Cause, Record};
+
+/// The force at a sample is at most so many times that at the mean depth.
+const MOST_SHARE: f64 = 10.0;
+/// The standard deviation of the zero of measured depths, over the radius of the probe: 0.2 mm.
+///
+/// Implements: ROB-082.
+const ZERO: f64 = 0.031;
 
 /// A sweep in its modes.
 pub struct PreparedSweep {
@@ -34,6 +41,40 @@ pub struct Cleaned {
     pub glitches: usize,
 }
 
+impl RobustQuestion<'_> {
+    /// The passes of a record under the probe of `reference` that are long enough to be sweeps, or the longest if none is; and how many
+    /// samples the others have.
+    ///
+    /// Implements: ROB-083, ROB-084.
+    pub fn passes(&self, record: &Record, reference: &ForceMap) -> (Vec<Record>, usize) {
+        let radius = reference.phantom().map_or(RADIUS, |of| of.probe().radius);
+        let width = |pass: &Record| {
+            let x = pass.positions();
+            x[x.len() - 1] - x[0]
+        };
+        let is_long = |pass: &Record| {
+            !is_narrow(width(pass), radius) && pass.positions().len() >= self.least_samples()
+        };
+        let mut passes = record.passes();
+        if passes.iter().any(is_long) {
+            passes.retain(is_long);
+        } else {
+            passes.sort_by(|a, b| width(b).total_cmp(&width(a)));
+            passes.truncate(1);
+        }
+        let kept: usize = passes.iter().map(|pass| pass.positions().len()).sum();
+        (passes, record.positions().len() - kept)
+    }
+
+    /// The fewest samples of a sweep.
+    fn least_samples(&self) -> usize {
+        match self.noise_sd {
+            Some(_) => gates::LEAST_SAMPLES_IN_NOISE,
+            None => gates::LEAST_SAMPLES,
+        }
+    }
+}
+
 /// The sweep, ready for its records.
 ///
 /// # Errors
@@ -43,46 +84,17 @@ pub fn prepared(
     without: &ForceTable,
     sweep: &RobustSweep<'_>,
 ) -> Result<PreparedSweep, Refusal> {
-    let (record, depth) = (sweep.record, sweep.depth);
-    let radius = sweep.changes.map_or(RADIUS, |changes| changes.radius);
-    let of_default = GelUncertainty::default().depth_percent;
-    let depth_percent = sweep.changes.map_or(of_default, |of| of.depth_percent);
+    let record = sweep.record;
     let samples = record.positions().len();
-    let least = match question.noise_sd {
-        Some(_) => gates::LEAST_SAMPLES_IN_NOISE,
-        None => gates::LEAST_SAMPLES,
-    };
+    let least = question.least_samples();
     let few = Refusal::state(
         format!("{samples} samples"),
         format!("give at least {least}"),
     );
     few.in_file(record.file()).when(samples < least)?;
-    let forces = expected(record, without, depth)?;
-    let depths = without.depths();
-    let slope = depth_slope(depths, depth, |depth| expected(record, without, depth))?;
-    // A thick gel gives way as its depth, at least.
-    let slope = slope.unwrap_or_else(|| forces.iter().map(|force| force / depth).collect());
-    let at = |changes: &[GelChange]| {
-        changes
-            .iter()
-            .map(|change| change.at(record, depth))
-            .collect::<Result<Vec<_>, Refusal>>()
-    };
-    let (gel, support) = match sweep.changes {
-        Some(changes) => (at(&changes.gel)?, at(&changes.support)?),
-        None => (Vec::new(), Vec::new()),
-    };
-    let modes = Modes::new(record.positions(), radius, question.noise_sd.is_some());
-    let undisturbed = Undisturbed {
-        slope,
-        gel,
-        support,
-        travelled: record.travelled(),
-        depth_sd: 0.01 * depth_percent * depth,
-        radius,
-        is_zeroed: question.is_zeroed,
-        forces,
-    };
+    let undisturbed = undisturbed(question, without, sweep)?;
+    let is_stated = question.noise_sd.is_some();
+    let modes = Modes::new(record.positions(), undisturbed.radius, is_stated);
     let forces = modes.of(channels(&undisturbed.forces));
     Ok(PreparedSweep {
         modes,
@@ -90,6 +102,77 @@ pub fn prepared(
         undisturbed,
         forces,
     })
+}
+
+/// What the sweep is like without disturbances.
+fn undisturbed(
+    question: &RobustQuestion<'_>,
+    without: &ForceTable,
+    sweep: &RobustSweep<'_>,
+) -> Result<Undisturbed, Refusal> {
+    let (record, depth) = (sweep.record, sweep.depth);
+    let radius = sweep.changes.map_or(RADIUS, |changes| changes.radius);
+    let of_default = GelUncertainty::default().depth_percent;
+    let depth_percent = sweep.changes.map_or(of_default, |of| of.depth_percent);
+    let several = Refusal::state(
+        "the record may have several passes, at depths of their own",
+        "give each of its passes as a sweep",
+    );
+    let place = record
+        .place()
+        .ok_or_else(|| several.in_file(record.file()))?;
+    let samples = record.positions().len();
+    let own_depths = record
+        .depths()
+        .map_or_else(|| vec![depth; samples], <[f64]>::to_vec);
+    let forces = expected(record, without, depth)?;
+    let slope = slope(record, without, depth, expected)?;
+    // A thick gel gives way as its depth, at least.
+    let over_depth = || (forces.iter().zip(own_depths.iter().cycle())).map(|(f, d)| f / d);
+    let slope = slope.unwrap_or_else(|| over_depth().collect());
+    let even = record.moved(|_| own_depths.iter().sum::<f64>() / samples as f64);
+    let even = expected(&even, without, depth)?;
+    let only = |is_so: bool, of: Vec<f64>| if is_so { of } else { Vec::new() };
+    let times = |sd: f64| slope.iter().map(|slope| sd * slope).collect();
+    let has_depths = record.depths().is_some();
+    let zero_sd = ZERO * radius * depth_percent / of_default;
+    let depth_noise = record.depth_sd();
+    let is_depth_noise = depth_noise > 0.0 && question.noise_sd.is_some();
+    let depth_sd = own_depths.iter().map(|depth| 0.01 * depth_percent * depth);
+    let at = |changes: &[GelChange]| {
+        let changes = changes.iter().map(|change| change.at(record, depth));
+        changes.collect::<Result<Vec<_>, Refusal>>()
+    };
+    let (gel, support) = match sweep.changes {
+        Some(changes) => (at(&changes.gel)?, at(&changes.support)?),
+        None => (Vec::new(), Vec::new()),
+    };
+    Ok(Undisturbed {
+        u: along(record.positions(), place),
+        half: 0.5 * (place[1] - place[0]),
+        uneven: only(has_depths, difference(&forces, &even)),
+        share: share(channels(&forces).normal, channels(&even).normal),
+        zero_error: only(has_depths, times(zero_sd)),
+        depth_noise: only(is_depth_noise, times(depth_noise)),
+        slope,
+        gel,
+        support,
+        travelled: record.travelled(),
+        depth_sd: depth_sd.collect(),
+        radius,
+        is_zeroed: question.is_zeroed,
+        forces,
+    })
+}
+
+/// The forces at the samples over those at the mean depth.
+fn share(forces: &[f64], even: &[f64]) -> Vec<f64> {
+    let share = |(own, even): (&f64, &f64)| match own == even {
+        true => 1.0,
+        // A measured map may have no force there.
+        false => (own / even).clamp(0.0, MOST_SHARE),
+    };
+    forces.iter().zip(even).map(share).collect()
 }
 
 impl PreparedSweep {
@@ -130,30 +213,37 @@ impl PreparedSweep {
             return Err(Cause::Saturated);
         }
         let steps = forces.map(gates::step);
-        let clean = |(channel, step): (&[f64], f64)| {
+        let expected = channels(&self.undisturbed.forces).normal;
+        let uneven = self.uneven(level(forces.normal, expected));
+        let clean = |((channel, step), uneven): ((&[f64], f64), &[f64])| {
             if channel.is_empty() {
                 // Any forces do where none count.
                 return Ok((vec![0.0; modes.samples()], 0));
             }
             let mut channel = channel.to_vec();
+            let pairs = channel.iter_mut().zip(uneven);
+            pairs.for_each(|(force, uneven)| *force -= uneven);
             let glitches =
                 gates::without_glitches(modes, &mut channel, step).ok_or(Cause::Glitches);
             Ok((channel, glitches?))
         };
-        let Force { lateral, normal } = forces.zip(steps).map(clean);
+        let Force { lateral, normal } = forces.zip(steps).zip(channels(&uneven)).map(clean);
         let (lateral, normal) = (lateral?, normal?);
         let glitches = lateral.1 + normal.1;
-        let forces = Force::new(lateral.0, normal.0);
-        let expected = channels(&self.undisturbed.forces).normal;
-        let level = match question.is_zeroed {
-            true => 1.0,
-            false => level(&forces.normal, expected),
-        };
+        let mut forces = Force::new(lateral.0, normal.0);
         let white = |sd: f64| Spectrum::white(modes, sd * sd);
         let noise = match question.noise_sd {
             Some(sd) => sd.map(white),
             None => (forces.as_ref().zip(steps))
                 .map(|(channel, step)| modes.noise(channel, step, question.is_white)),
+        };
+        let channels = forces.lateral.iter_mut().chain(&mut forces.normal);
+        channels
+            .zip(&uneven)
+            .for_each(|(force, uneven)| *force += uneven);
+        let level = match question.is_zeroed {
+            true => 1.0,
+            false => level(&forces.normal, expected),
         };
         Ok(Cleaned {
             forces,
@@ -161,6 +251,17 @@ impl PreparedSweep {
             noise,
             glitches,
         })
+    }
+
+    /// What uneven depths add to the forces of a record of some level, N: nothing if there are none.
+    ///
+    /// Implements: ROB-081.
+    fn uneven(&self, level: f64) -> Vec<f64> {
+        self.undisturbed
+            .uneven
+            .iter()
+            .map(|of| level * of)
+            .collect()
     }
 
     /// Which amplitudes of the modes count: all, or those of the normal force.

@@ -224,7 +224,7 @@ fn what_is_known_leaves_the_classes() {
     assert!(parts.contains(&Part::Relaxation));
 }
 
-// Verifies: ROB-021, ROB-022, ROB-023.
+// Verifies: ROB-021, ROB-022, ROB-023, ROB-081, ROB-082.
 #[test]
 fn parts_and_classes_are_those_of_the_tables() {
     let (samples, radius, level) = (41, 6.5e-3, 2.0);
@@ -236,7 +236,13 @@ fn parts_and_classes_are_those_of_the_tables() {
         gel: vec![both(0.0, 0.1)],
         support: vec![both(0.2, 0.0)],
         travelled: positions(samples).iter().map(|x| x + 8e-3).collect(),
-        depth_sd: 0.2e-3,
+        u: modes.u.clone(),
+        half: 8e-3,
+        uneven: Vec::new(),
+        share: vec![1.0; samples],
+        zero_error: Vec::new(),
+        depth_noise: Vec::new(),
+        depth_sd: vec![0.2e-3; samples],
         radius,
         is_zeroed: false,
     };
@@ -311,6 +317,33 @@ fn parts_and_classes_are_those_of_the_tables() {
     });
     first(Part::UnevenFriction, 0, &|x, y| gauss(x, y, &[0.38, 0.77]));
     first(Part::Walk, 0, &|x, y| x.min(y) / 16e-3);
+    // Depths that were measured: their zero, and errors of their own. The first mode of N independent errors v has the variance Σv²/N.
+    let measured = Undisturbed {
+        zero_error: both(20.0, 200.0),
+        depth_noise: both(0.01, -0.03),
+        share: (0..samples)
+            .map(|at| if at < 20 { 0.5 } else { 1.0 })
+            .collect(),
+        ..sweep.clone()
+    };
+    let path = Disturbances::new(&modes, &measured);
+    let (even, beside) = (of.always(), path.always());
+    assert_eq!(beside.vectors.len(), even.vectors.len() + 1);
+    is(beside.vectors.last().unwrap(), &|_| [20.0, 200.0]);
+    let (errors, m) = (beside.rest - even.rest, modes.count());
+    for (row, column, variance) in [(0, 0, 1e-4), (0, m, -3e-4), (m, 0, -3e-4), (m, m, 9e-4)] {
+        assert_near(errors[(row, column)], variance, 1e-16);
+    }
+    // A smooth misfit is a share of the force at each sample.
+    let smooth = path.part(Part::Smooth).rest[(m, m)];
+    let ways: Vec<f64> = modes.u.iter().map(|u| way(*u)).collect();
+    let all = (0..samples).flat_map(|a| (0..samples).map(move |b| (a, b)));
+    let sum: f64 = all
+        .map(|(a, b)| {
+            measured.share[a] * measured.share[b] * gauss(ways[a], ways[b], &[0.38, 0.77])
+        })
+        .sum();
+    assert_near(smooth, level * level * sum / samples as f64, 1e-10);
     // 2, six of 1, and twelve of ½.
     assert_near(CLASSES.iter().map(|class| class.weight).sum(), 14.0, 0.0);
     let several = CLASSES
@@ -784,4 +817,152 @@ fn maps_of_the_normal_force_alone_judge_a_record_of_it() {
     let refused = judged([f0, f1], maps[1], true).unwrap_err().to_string();
     let expected = "sweep: the record has lateral forces, and the maps have none; leave out those of the record";
     assert_eq!(refused, expected);
+}
+
+/// A bank of one disc under a probe at 2 to 4.4 mm.
+fn deep_bank() -> Bank {
+    let laterals: Vec<f64> = (-8..=8).map(|x| f64::from(x) * 1e-3).collect();
+    let mut plan = BankPlan::new(Phantom::builtin("4.6").unwrap(), 4e-3, &laterals).unwrap();
+    plan.mesh_size = 2e-3;
+    plan.probe_depths = (0..5).map(|row| 2e-3 + 0.6e-3 * f64::from(row)).collect();
+    plan.bank().unwrap()
+}
+
+/// Forth at 2.5 mm and back at 3.8 mm with a tremor of 0.3 mm, over a gel of which the bank knows all, in noise of 0.02 N.
+fn trembling(bank: &Bank, has_disc: bool, trial: u64) -> Record {
+    let over: Vec<f64> = positions(161)
+        .into_iter()
+        .chain(positions(161).into_iter().rev())
+        .collect();
+    let tremor = |at: usize| 0.3e-3 * (1.9 * at as f64).sin();
+    let depth = |at: usize| if at < 161 { 2.5e-3 } else { 3.8e-3 } + tremor(at);
+    let depths: Vec<f64> = (0..over.len()).map(depth).collect();
+    let table = match has_disc {
+        true => bank.maps()[0].table(),
+        false => bank.reference().table(),
+    };
+    let forces = table.path(&depths, &over).unwrap();
+    let noisy = |channel: Vec<f64>, trial| -> Vec<f64> {
+        let pairs = channel.iter().zip(noise(channel.len(), trial));
+        pairs.map(|(force, noise)| force + 0.02 * noise).collect()
+    };
+    let (lateral, normal) = (
+        noisy(forces.lateral, 2 * trial),
+        noisy(forces.normal, 2 * trial + 1),
+    );
+    Record::along("path", &over, &depths, Force::new(&lateral, &normal)).unwrap()
+}
+
+// Verifies: ROB-081, ROB-083, ROB-080, BNK-081, BNK-020.
+#[test]
+fn passes_whose_depth_trembles_are_judged_by_what_the_maps_say_of_it() {
+    let bank = deep_bank();
+    // Those of the probe, 0.3 mm above the first and below the last, and one between two.
+    let rows = bank.reference().table().depths();
+    assert_eq!(rows.len(), 11, "{rows:?}");
+    for (row, depth) in rows.iter().enumerate() {
+        assert_near(*depth, 1.7e-3 + 0.3e-3 * row as f64, 1e-9);
+    }
+    let question = RobustQuestion::default();
+    let judge = |record: &Record, has_depths: bool| {
+        let (mut passes, left_out) = question.passes(record, bank.reference());
+        assert_eq!((passes.len(), left_out), (2, 0));
+        if !has_depths {
+            passes = passes
+                .iter()
+                .map(|pass| Record::new("path", pass.positions(), pass.forces()).unwrap())
+                .collect();
+        }
+        let all: Vec<&Record> = passes.iter().collect();
+        let changes = GelChanges::along(bank.reference(), &all, &GelUncertainty::default());
+        let changes = changes.unwrap();
+        let sweeps: Vec<_> = (passes.iter().zip([2.6e-3, 3.8e-3]))
+            .map(|(record, depth)| RobustSweep {
+                record,
+                depth,
+                changes: changes.as_ref(),
+                is_reference: false,
+            })
+            .collect();
+        question.locate(&bank, None, &sweeps).unwrap().0
+    };
+    for (has_disc, expected) in [(true, Decision::Inclusion), (false, Decision::NoInclusion)] {
+        let record = trembling(&bank, has_disc, 3);
+        let answer = judge(&record, true);
+        assert_eq!(
+            (answer.decision, &answer.glitches[..]),
+            (Some(expected), &[0, 0][..]),
+            "{answer:?}"
+        );
+        // The noise is that of the sensor: of 161 samples its standard deviation is known to 6 %.
+        let sd = answer.noise_sd.iter().map(|sd| sd.normal.unwrap());
+        assert!(
+            sd.clone().all(|sd| (0.015..0.025).contains(&sd)),
+            "{answer:?}"
+        );
+        let whole = RobustSweep {
+            record: &record,
+            depth: 0.0,
+            changes: None,
+            is_reference: false,
+        };
+        let error = question
+            .locate(&bank, None, &[whole])
+            .unwrap_err()
+            .to_string();
+        assert_eq!(
+            error,
+            "path: the record may have several passes, at depths of their own; give each of its passes as a sweep"
+        );
+    }
+    // A probe that goes on for 2 mm is no sweep, and neither is one of seven samples.
+    let step = |k: usize| -8e-3 + 1e-4 * k as f64;
+    let back: Vec<f64> = (0..161)
+        .map(step)
+        .chain((0..21).map(|k| 8e-3 - 1e-4 * k as f64))
+        .collect();
+    let far = back[..161]
+        .iter()
+        .copied()
+        .chain((0..7).map(|k| 8e-3 - 2e-3 * k as f64));
+    let zeros = |count| vec![0.0; count];
+    for (over, short) in [(back.clone(), 20), (far.collect(), 6)] {
+        let (none, depths) = (zeros(over.len()), vec![3e-3; over.len()]);
+        let record = Record::along("path", &over, &depths, Force::new(&none, &none)).unwrap();
+        let (passes, left_out) = question.passes(&record, bank.reference());
+        // The first sample on the way back is where the probe turns.
+        assert_eq!((passes.len(), left_out), (1, short));
+    }
+    let even = Record::new("sweep", &back[..161], Force::new(&zeros(161), &zeros(161))).unwrap();
+    assert_eq!(
+        question.passes(&even, bank.reference()),
+        (vec![even.clone()], 0)
+    );
+    // The changes at a depth between rows are those of that depth, within a hundredth of them.
+    let at = vec![2.9e-3; 161];
+    let record = Record::along(
+        "path",
+        &back[..161],
+        &at,
+        Force::new(&zeros(161), &zeros(161)),
+    );
+    let record = record.unwrap();
+    let all = GelChanges::along(bank.reference(), &[&record], &GelUncertainty::default());
+    let own = GelChanges::new(bank.reference(), 2.9e-3, &GelUncertainty::default());
+    let (all, own) = (all.unwrap().unwrap(), own.unwrap().unwrap());
+    for (all, own) in all
+        .gel
+        .iter()
+        .chain(&all.support)
+        .zip(own.gel.iter().chain(&own.support))
+    {
+        let [found, right] = [all.at(&record, 0.0), own.at(&even, 2.9e-3)].map(Result::unwrap);
+        let most = right.iter().fold(0.0, |most: f64, of| most.max(of.abs()));
+        let off = found
+            .iter()
+            .zip(&right)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
+        assert!(most > 1e-3 && off < 0.02 * most, "{off:e} of {most:e}");
+    }
 }

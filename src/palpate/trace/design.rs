@@ -70,6 +70,8 @@ pub struct Design {
     pub nuisances: Vec<Vec<f64>>,
     /// What a depth at the end of its tolerance adds to either hypothesis.
     pub depth_errors: Vec<Vec<f64>>,
+    /// The standard deviation of what the independent errors of the depths add, N, with the sign of ∂F_0/∂d; nothing if there are none.
+    pub depth_noise: Vec<f64>,
 }
 
 impl Design {
@@ -81,17 +83,24 @@ impl Design {
         without: &ForceTable,
         record: &Record,
     ) -> Result<Design, Refusal> {
-        let (depth, depths) = (question.depth, without.depths());
-        let expected = |depth| expected(record, without, depth);
-        let (reference, samples) = (expected(depth)?, record.positions().len());
-        let unknown = question.unknown;
+        let reference = expected(record, without, question.depth)?;
+        let samples = record.positions().len();
+        let slope = || slope(record, without, question.depth, expected);
+        let found = "the errors of the depths cannot be told from noise that is estimated";
+        let is_mixed = record.depth_sd() > 0.0 && question.noise.sd.is_none();
+        Refusal::state(found, "state the noise (--noise-sd-n)").when(is_mixed)?;
+        let depth_noise = match record.depth_sd() {
+            0.0 => Vec::new(),
+            sd => scaled(&slope()?.ok_or_else(single_depth)?, sd),
+        };
         let mut design = Design {
             samples,
             residual: difference(&stacked(record.forces()), &reference),
             template: vec![0.0; reference.len()],
-            nuisances: nuisances_of(unknown, depths, depth, (&reference, samples), expected)?,
+            nuisances: nuisances_of(question.unknown, (&reference, samples), slope)?,
             reference,
             depth_errors: Vec::new(),
+            depth_noise,
         };
         design.add_depth_error(question, without, record)?;
         Ok(design)
@@ -108,7 +117,7 @@ impl Design {
     ) -> Result<(), Refusal> {
         let (depth, tolerance) = (question.depth, question.depth_tolerance);
         if !question.is_unknown(Unknown::Depth) && tolerance > 0.0 {
-            let slope = depth_slope(map.depths(), depth, |depth| expected(record, map, depth))?;
+            let slope = slope(record, map, depth, expected)?;
             self.depth_errors
                 .extend(slope.map(|slope| scaled(&slope, tolerance)));
         }
@@ -127,8 +136,14 @@ impl Design {
         Ok(())
     }
 
-    /// The same with a function of each part.
-    fn map(&self, of: impl Fn(&[f64]) -> Vec<f64>) -> Design {
+    /// The parts over the standard deviations of the noise, or over the covariance of the two channels where the depths have errors.
+    ///
+    /// Implements: TRC-086.
+    pub fn whitened(&self, noise_sd: Force<f64>) -> Design {
+        let of = |part: &[f64]| match &self.depth_noise[..] {
+            [] => whitened(part, self.samples, noise_sd),
+            beside => whitened_beside(part, self.samples, noise_sd, beside),
+        };
         let all = |parts: &[Vec<f64>]| parts.iter().map(|part| of(part)).collect();
         Design {
             samples: self.samples,
@@ -137,12 +152,8 @@ impl Design {
             template: of(&self.template),
             nuisances: all(&self.nuisances),
             depth_errors: all(&self.depth_errors),
+            depth_noise: self.depth_noise.clone(),
         }
-    }
-
-    /// The parts over the standard deviations of the noise.
-    pub fn whitened(&self, noise_sd: Force<f64>) -> Design {
-        self.map(|part| whitened(part, self.samples, noise_sd))
     }
 
     /// What the depth may add to T at most.
@@ -243,6 +254,27 @@ pub fn whitened(stack: &[f64], samples: usize, noise_sd: Force<f64>) -> Vec<f64>
     stacked(channels.map(|(samples, sd)| scaled(samples, 1.0 / sd)))
 }
 
+/// The same where a common error of both channels of a sample is `beside` their noise: over the Cholesky factor of their covariance.
+///
+/// Implements: TRC-086.
+fn whitened_beside(stack: &[f64], samples: usize, sd: Force<f64>, beside: &[f64]) -> Vec<f64> {
+    let Force { lateral, normal } = channels(stack, samples).zip(channels(beside, samples));
+    let root = |sd: f64, of: f64| libm::sqrt(sd * sd + of * of);
+    let mut white = Vec::with_capacity(stack.len());
+    let mut along = vec![(0.0, 0.0); samples];
+    for ((value, of), along) in lateral.0.iter().zip(lateral.1).zip(&mut along) {
+        let own = root(sd.lateral, *of);
+        white.push(value / own);
+        *along = (of / own, value / own);
+    }
+    for ((value, of), (share, lateral)) in normal.0.iter().zip(normal.1).zip(along) {
+        let common = of * share;
+        let own = root(sd.normal, *of * libm::sqrt(1.0 - share * share));
+        white.push((value - common * lateral) / own);
+    }
+    white
+}
+
 fn scaled(values: &[f64], factor: f64) -> Vec<f64> {
     values.iter().map(|value| factor * value).collect()
 }
@@ -266,20 +298,17 @@ pub fn nuisances(
 ) -> Result<Vec<Force<Vec<f64>>>, Refusal> {
     let f0 = expected(depth)?;
     let samples = f0.normal.len();
-    let expected = |depth| expected(depth).map(stacked);
-    let f0 = (&*stacked(f0), samples);
-    let nuisances = nuisances_of(unknown, depths, depth, f0, expected)?;
+    let slope = || depth_slope(depths, depth, |depth| expected(depth).map(stacked));
+    let nuisances = nuisances_of(unknown, (&*stacked(f0), samples), slope)?;
     let apart = |nuisance: &Vec<f64>| channels(nuisance, samples).map(<[f64]>::to_vec);
     Ok(nuisances.iter().map(apart).collect())
 }
 
-/// As [`nuisances`], all stacked, with the forces `f0` without inclusion at `depth`, so many samples of each channel.
+/// As [`nuisances`], all stacked, with the forces `f0` without inclusion, so many samples of each channel, and their `slope` ∂F_0/∂d.
 pub(crate) fn nuisances_of(
     unknown: &[Unknown],
-    depths: &[f64],
-    depth: f64,
     (f0, samples): (&[f64], usize),
-    expected: impl Fn(f64) -> Result<Vec<f64>, Refusal>,
+    slope: impl Fn() -> Result<Option<Vec<f64>>, Refusal>,
 ) -> Result<Vec<Vec<f64>>, Refusal> {
     let alone = |series: &dyn Fn(usize) -> f64| {
         let in_channel = |channel: usize| {
@@ -304,7 +333,7 @@ pub(crate) fn nuisances_of(
         nuisances.push(f0.to_vec());
     }
     if unknown.contains(&Unknown::Depth) {
-        nuisances.push(depth_slope(depths, depth, expected)?.ok_or_else(single_depth)?);
+        nuisances.push(slope()?.ok_or_else(single_depth)?);
     }
     Ok(nuisances)
 }
@@ -333,4 +362,43 @@ pub(crate) fn depth_slope(
     let (shallow, deep) = (expected(from)?, expected(to)?);
     let change = difference(&deep, &shallow);
     Ok(Some(scaled(&change, 1.0 / (to - from))))
+}
+
+/// Half the way over which ∂F/∂d is taken at a sample with a depth of its own, m.
+const HALF_STEP: f64 = 0.05e-3;
+
+/// ∂F/∂d of `map` at the samples of `record`, N/m, of forces as `expected` gives them: at the depth of each sample, or at `depth` (m)
+/// where the record has none; none if the map has one depth.
+///
+/// # Errors
+/// As [`Record::expected`].
+///
+/// Implements: TRC-060, TRC-084.
+pub(crate) fn slope(
+    record: &Record,
+    map: &ForceTable,
+    depth: f64,
+    expected: impl Fn(&Record, &ForceTable, f64) -> Result<Vec<f64>, Refusal>,
+) -> Result<Option<Vec<f64>>, Refusal> {
+    let (rows, last) = (map.depths(), map.depths().len() - 1);
+    if record.depths().is_none() {
+        return depth_slope(rows, depth, |depth| expected(record, map, depth));
+    }
+    if last == 0 {
+        return Ok(None);
+    }
+    let beside = |way: f64| record.moved(|depth| (depth + way).clamp(rows[0], rows[last]));
+    let [shallow, deep] = [-HALF_STEP, HALF_STEP].map(beside);
+    let ways = deep
+        .depths()
+        .into_iter()
+        .flatten()
+        .zip(shallow.depths().into_iter().flatten());
+    let ways: Vec<f64> = ways.map(|(deep, shallow)| deep - shallow).collect();
+    let change = difference(
+        &expected(&deep, map, depth)?,
+        &expected(&shallow, map, depth)?,
+    );
+    let pairs = change.iter().zip(ways.iter().cycle());
+    Ok(Some(pairs.map(|(change, way)| change / way).collect()))
 }

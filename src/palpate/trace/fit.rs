@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::contact::{in_air, level, wrong_level};
-use super::design::{Design, Unknown, squares};
+use super::design::{Design, Unknown, squares, whitened};
 use super::judge::{Correlation, Noise, Question};
 use super::{Trace, refused};
 use crate::detect::DetectError;
@@ -102,11 +102,12 @@ pub fn reasons(causes: &[Cause]) -> String {
 }
 
 impl Fit {
-    /// How well `white`, the parts of `record` over the standard deviations `noise_sd`, fits.
+    /// How well `white`, the parts of `design` over their noise, fits; `noise_sd` are the standard deviations of the forces.
     ///
     /// Implements: TRC-070, TRC-016, TRC-017.
     pub fn new(
         question: &Question<'_>,
+        design: &Design,
         white: &Design,
         noise_sd: Force<f64>,
     ) -> Result<Fit, DetectError> {
@@ -126,16 +127,14 @@ impl Fit {
             1.0
         };
         let limits = question.noise.sd.map(|_| limits(degrees, within));
-        let normal = |part| {
-            white
-                .channels(part)
-                .normal
-                .iter()
-                .map(|of| noise_sd.normal * of)
+        let normal = |part: &[f64]| -> Vec<f64> {
+            let white = whitened(part, design.samples, noise_sd);
+            let normal = design.channels(&white).normal.iter();
+            normal.map(|of| noise_sd.normal * of).collect()
         };
-        let expected: Vec<f64> = normal(&white.reference).collect();
-        let forces = normal(&white.residual).zip(&expected).map(|(r, f)| r + f);
-        let forces: Vec<f64> = forces.collect();
+        let expected = normal(&design.reference);
+        let residual = normal(&design.residual);
+        let forces: Vec<f64> = residual.iter().zip(&expected).map(|(r, f)| r + f).collect();
         let touches = !question.is_zeroed;
         let lateral = white.has_lateral().then_some(noise_sd.lateral);
         Ok(Fit {

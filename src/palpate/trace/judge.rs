@@ -29,9 +29,9 @@ pub enum Criterion {
 /// What is known of a record, and what is asked: does the gel under its sweep hold an inclusion?
 #[derive(Debug, Clone, Copy)]
 pub struct Question<'a> {
-    /// Depth of the sweep, m.
+    /// Depth of the sweep, m, where the samples have none of their own.
     pub depth: f64,
-    /// The true depth is within so much of it, m, unless it is unknown; 0 if it is exact.
+    /// The true depth is within so much of it, or of all depths of the samples alike, m, unless it is unknown; 0 if it is exact.
     pub depth_tolerance: f64,
     /// Whether the sensor was set to zero on the gel, so that its forces say nothing of contact.
     pub is_zeroed: bool,
@@ -106,7 +106,7 @@ impl Question<'_> {
             None => design.noise_sd()?,
         };
         let white = design.whitened(noise_sd);
-        let fit = Fit::new(self, &white, noise_sd)?;
+        let fit = Fit::new(self, design, &white, noise_sd)?;
         Ok((white, fit))
     }
 

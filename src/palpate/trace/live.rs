@@ -2,12 +2,12 @@
 
 use serde_json::{Map, Value};
 
-use super::COLUMNS;
+use super::{COLUMNS, REQUIRED};
 use crate::csv::{Column, Layout, Rows};
 use crate::refusal::Refusal;
 
 /// Those of a trace over positions.
-const LIVE: [Column; 3] = [&[COLUMNS[0][0]], COLUMNS[1], COLUMNS[2]];
+const LIVE: [Column; 4] = [&[COLUMNS[0][0]], COLUMNS[1], COLUMNS[2], COLUMNS[3]];
 /// The headers that are right, for a person.
 const EXPECTED: &str = "position_mm,lateral_force_n,normal_force_n, in any order, also position_m and forces as _mn, or say with --columns what each holds";
 
@@ -18,10 +18,11 @@ const EXPECTED: &str = "position_mm,lateral_force_n,normal_force_n, in any order
 ///
 /// let mut csv = LiveSamples::new("-", Default::default());
 /// assert_eq!(csv.sample("position_mm,normal_force_n")?, None);
-/// assert_eq!(csv.sample("-1,1.5")?, Some((-1e-3, None, 1.5)));
+/// let sample = csv.sample("-1,1.5")?.unwrap();
+/// assert_eq!((sample.position, sample.depth, sample.lateral, sample.normal), (-1e-3, None, None, 1.5));
 /// let mut json = LiveSamples::new("-", Default::default());
-/// let sample = json.sample(r#"{"position_mm": -1, "lateral_force_n": 0.25, "normal_force_n": 1.5}"#)?;
-/// assert_eq!(sample, Some((-1e-3, Some(0.25), 1.5)));
+/// let sample = json.sample(r#"{"position_mm": -1, "depth_mm": 4, "normal_force_n": 1.5}"#)?;
+/// assert_eq!(sample.unwrap().depth, Some(4e-3));
 /// # Ok::<(), palpate::refusal::Refusal>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -33,12 +34,22 @@ pub struct LiveSamples {
     line: usize,
     /// The header of CSV.
     header: Option<String>,
-    /// Whether the first sample has a lateral force.
-    has_lateral: Option<bool>,
+    /// Whether the first sample has each of the columns.
+    first: Option<[bool; 4]>,
 }
 
-/// Position (m), lateral force, if the sensor has it, and normal force (N).
-type LiveSample = (f64, Option<f64>, f64);
+/// A sample; NaN for a number that is missing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LiveSample {
+    /// Lateral position, m.
+    pub position: f64,
+    /// Depth, m, if it is recorded.
+    pub depth: Option<f64>,
+    /// Lateral force, N, if the sensor has it.
+    pub lateral: Option<f64>,
+    /// Normal force, N.
+    pub normal: f64,
+}
 
 impl LiveSamples {
     /// Before the first line; in messages `file` is where the lines come from.
@@ -49,7 +60,7 @@ impl LiveSamples {
             layout,
             line: 0,
             header: None,
-            has_lateral: None,
+            first: None,
         }
     }
 
@@ -58,8 +69,8 @@ impl LiveSamples {
         refusal.at(self.line).in_file(&*self.file)
     }
 
-    /// The position (m), the lateral force, if the header or the first object has it, and the normal force (N) of the next line, NaN where
-    /// a number is missing; nothing of a header, a comment or a blank line.
+    /// The sample of the next line, with a lateral force and a depth if the header or the first object has them; nothing of a header, a
+    /// comment or a blank line.
     ///
     /// # Errors
     /// A header or object that does not name the columns, a field that is no finite decimal number, text that is no JSON; with the line.
@@ -87,13 +98,21 @@ impl LiveSamples {
     /// A row below a header.
     fn row(&mut self, header: &str, row: &str) -> Result<LiveSample, Refusal> {
         let text = format!("{header}\n{row}");
-        let read = Rows::parse_last_optional::<2>(&text, LIVE, EXPECTED, &self.layout, true)?;
-        let (table, has_lateral) = read;
-        let had_lateral = *self.has_lateral.get_or_insert(has_lateral);
-        // A sample without the lateral force that the first one had is missing.
-        let whole = table.rows.first().filter(|_| has_lateral || !had_lateral);
-        let [position, normal, lateral] = whole.map_or([f64::NAN; 3], |(_, numbers)| *numbers);
-        Ok((position, had_lateral.then_some(lateral), normal))
+        let read = Rows::parse_optional(&text, LIVE, REQUIRED, EXPECTED, &self.layout, true)?;
+        let (table, there) = read;
+        let first = *self.first.get_or_insert(there);
+        // A sample without what the first one had is missing.
+        let is_whole = first.iter().zip(there).all(|(had, has)| has || !had);
+        let whole = table.rows.first().filter(|_| is_whole);
+        let [position, normal, lateral, depth] =
+            whole.map_or([f64::NAN; 4], |(_, numbers)| *numbers);
+        let [.., has_lateral, has_depth] = first;
+        Ok(LiveSample {
+            position,
+            depth: has_depth.then_some(depth),
+            lateral: has_lateral.then_some(lateral),
+            normal,
+        })
     }
 }
 
@@ -120,8 +139,7 @@ mod tests {
         let read = lines
             .iter()
             .filter_map(|line| samples.sample(line).transpose());
-        let numbers =
-            |(position, lateral, normal): LiveSample| [position, lateral.unwrap_or(0.0), normal];
+        let numbers = |of: LiveSample| [of.position, of.lateral.unwrap_or(0.0), of.normal];
         let read: Result<Vec<_>, Refusal> = read.map(|read| read.map(numbers)).collect();
         read.map_err(|refusal| refusal.to_string())
     }

@@ -7,6 +7,7 @@
 //! | `contact.rs` | whether the probe touches |
 //! | `fit.rs` | whether it fits, and the likeliest cause if not |
 //! | `judge.rs` | what is known, what is asked, and the answer at a known position |
+//! | `path.rs` | records whose samples have depths of their own |
 //! | `live.rs` | samples that come line by line |
 //!
 //! Where the position is not known, [`crate::bank`] judges the record.
@@ -54,6 +55,7 @@ pub(crate) mod design;
 mod fit;
 mod judge;
 mod live;
+mod path;
 #[cfg(test)]
 mod tests;
 
@@ -62,7 +64,7 @@ use std::path::Path;
 pub use design::{Unknown, in_words, nuisances};
 pub use fit::{Cause, Fit, MISFIT_RATE, reasons};
 pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
-pub use live::LiveSamples;
+pub use live::{LiveSample, LiveSamples};
 
 use crate::csv::{Column, Layout, Rows};
 use crate::decimal::mm;
@@ -73,15 +75,18 @@ use crate::refusal::Refusal;
 use crate::stats::error::check_samples;
 use crate::text::extremes;
 
-/// Position, or time where there is no position; normal force, lateral force, which may be missing.
-const COLUMNS: [Column; 3] = [
+/// Position, or time where there is no position; normal force; lateral force and depth, which may be missing.
+const COLUMNS: [Column; 4] = [
     &[
         &[("position_mm", -3), ("position_m", 0)],
         &[("time_s", 0), ("time_ms", -3)],
     ],
     &[&[("normal_force_n", 0), ("normal_force_mn", -3)]],
     &[&[("lateral_force_n", 0), ("lateral_force_mn", -3)]],
+    &[&[("depth_mm", -3), ("depth_m", 0)]],
 ];
+/// How many of them a trace must have.
+const REQUIRED: usize = 2;
 /// The headers that are right, for a person.
 const EXPECTED_HEADER: &str = "position_mm,lateral_force_n,normal_force_n, in any order, or time_s for the position, also position_m, time_ms and forces as _mn, or say with --columns what each holds";
 
@@ -106,11 +111,12 @@ pub struct Trace {
     abscissa: Abscissa,
     samples: Vec<Sample>,
     has_lateral: bool,
+    has_depths: bool,
     notes: Vec<String>,
 }
 
-/// The line of a sample, and its abscissa (s or m), normal and lateral force (N); without a lateral force 0 for it.
-type Sample = (usize, [f64; 3]);
+/// The line of a sample, and its abscissa (s or m), normal and lateral force (N) and depth (m); 0 for what is not there.
+type Sample = (usize, [f64; 4]);
 
 /// The motion of the probe while times were recorded.
 ///
@@ -133,7 +139,7 @@ pub struct Motion {
     pub start: f64,
 }
 
-/// A trace over positions, which increase but for jitter (see [`JITTER`]).
+/// A trace over positions, which increase but for jitter (see [`JITTER`]); where each sample has a depth of its own, in the order of time.
 ///
 /// ```
 /// use palpate::force::Force;
@@ -156,6 +162,12 @@ pub struct Record {
     /// The line of each sample.
     lines: Vec<usize>,
     positions: Vec<f64>,
+    /// One for each sample, or none.
+    depths: Vec<f64>,
+    /// The standard deviation of the error of each of them, m.
+    depth_sd: f64,
+    /// The first and the last position of the record of which this is a pass.
+    place: Option<[f64; 2]>,
     forces: Force<Vec<f64>>,
 }
 
@@ -184,12 +196,12 @@ impl Trace {
     /// # Errors
     /// As [`Trace::from_csv`]; a layout that states what a trace does not have.
     ///
-    /// Implements: MAP-046, MAP-048, TRC-011.
+    /// Implements: MAP-046, MAP-048, TRC-011, TRC-080, TRC-081.
     pub fn from_csv_as(text: &str, file: &str, layout: &Layout) -> Result<Trace, Refusal> {
         let read = || {
             let read =
-                Rows::parse_last_optional::<2>(text, COLUMNS, EXPECTED_HEADER, layout, true)?;
-            let (mut table, has_lateral) = read;
+                Rows::parse_optional(text, COLUMNS, REQUIRED, EXPECTED_HEADER, layout, true)?;
+            let (mut table, [.., has_lateral, has_depths]) = read;
             if !has_lateral {
                 let note = "there is no lateral force: the normal force alone counts";
                 table.notes.push(note.into());
@@ -201,7 +213,9 @@ impl Trace {
                 check_times(&samples)?;
                 Abscissa::Time
             } else {
-                check_pass(&samples)?;
+                if !has_depths {
+                    check_pass(&samples)?;
+                }
                 Abscissa::Position
             };
             Ok(Trace {
@@ -209,6 +223,7 @@ impl Trace {
                 abscissa,
                 samples,
                 has_lateral,
+                has_depths,
                 notes: table.notes,
             })
         };
@@ -248,7 +263,11 @@ impl Trace {
             )),
         };
         placed.map_err(|refusal| refusal.in_file(&*file))?;
-        Ok(Record::of(file, samples, self.has_lateral))
+        Ok(Record::of(
+            file,
+            samples,
+            [self.has_lateral, self.has_depths],
+        ))
     }
 }
 
@@ -285,6 +304,32 @@ fn check_times(samples: &[Sample]) -> Result<(), Refusal> {
 /// Did the probe go towards −x?
 fn backwards(samples: &[Sample]) -> bool {
     matches!(samples, [(_, first), .., (_, last)] if last[0] < first[0])
+}
+
+/// The samples of lists, whose numbers from 1 stand for lines.
+///
+/// # Errors
+/// As [`Record::along`].
+fn samples(
+    positions: &[f64],
+    depths: &[f64],
+    forces: Force<&[f64]>,
+) -> Result<Vec<Sample>, Refusal> {
+    check_samples("positions", positions, positions.len())?;
+    if !forces.lateral.is_empty() {
+        check_samples("lateral forces", forces.lateral, positions.len())?;
+    }
+    check_samples("normal forces", forces.normal, positions.len())?;
+    let of = |list: &[f64], k: usize| list.get(k).copied().unwrap_or_default();
+    let sample = |k| {
+        [
+            positions[k],
+            forces.normal[k],
+            of(forces.lateral, k),
+            of(depths, k),
+        ]
+    };
+    Ok((0..positions.len()).map(|k| (k + 1, sample(k))).collect())
 }
 
 /// Checks that positions go one way, but for jitter.
@@ -336,34 +381,33 @@ impl Record {
     /// Implements: TRC-004, TRC-008.
     pub fn new(name: &str, positions: &[f64], forces: Force<&[f64]>) -> Result<Record, Refusal> {
         let read = || {
-            check_samples("positions", positions, positions.len())?;
-            let has_lateral = !forces.lateral.is_empty();
-            if has_lateral {
-                check_samples("lateral forces", forces.lateral, positions.len())?;
-            }
-            check_samples("normal forces", forces.normal, positions.len())?;
-            let lateral = |k| forces.lateral.get(k).copied().unwrap_or_default();
-            let sample = |k: usize| [positions[k], forces.normal[k], lateral(k)];
-            let samples: Vec<_> = (0..positions.len()).map(|k| (k + 1, sample(k))).collect();
+            let samples = samples(positions, &[], forces)?;
             check_pass(&samples)?;
-            Ok(Record::of(name.into(), samples, has_lateral))
+            Ok(Record::of(
+                name.into(),
+                samples,
+                [!forces.lateral.is_empty(), false],
+            ))
         };
         read().map_err(|refusal: Refusal| refusal.in_file(name))
     }
 
-    /// The record of samples over positions that go one way.
-    fn of(file: String, mut samples: Vec<Sample>, has_lateral: bool) -> Record {
-        if backwards(&samples) {
+    /// The record of samples over positions that go one way, or that have depths.
+    ///
+    /// Implements: TRC-010, TRC-081, TRC-085.
+    fn of(file: String, mut samples: Vec<Sample>, [has_lateral, has_depths]: [bool; 2]) -> Record {
+        if !has_depths && backwards(&samples) {
             samples.reverse();
         }
         let column = |of: usize| samples.iter().map(|(_, sample)| sample[of]).collect();
+        let there = |is_there, of| if is_there { column(of) } else { Vec::new() };
         Record {
             lines: samples.iter().map(|(line, _)| *line).collect(),
             positions: column(0),
-            forces: Force {
-                lateral: if has_lateral { column(2) } else { Vec::new() },
-                normal: column(1),
-            },
+            depths: there(has_depths, 3),
+            depth_sd: 0.0,
+            place: None,
+            forces: Force::new(there(has_lateral, 2), column(1)),
             file,
         }
     }
@@ -412,26 +456,15 @@ impl Record {
     /// Implements: TRC-025.
     pub fn trimmed(self, map: &ForceTable) -> Result<(Record, Option<String>), Refusal> {
         let all = self.positions.len();
-        let kept = (0..all).filter(|&sample| is_over(map, self.positions[sample]));
-        let kept: Vec<usize> = kept.collect();
-        let (left_out, range) = (all - kept.len(), range(map));
+        let kept: Vec<usize> = (0..all).filter(|&at| self.is_over(map, at)).collect();
+        let (left_out, range) = (all - kept.len(), self.range(map));
         if kept.is_empty() {
             let found = format!("all of {all} samples are outside the maps, which have {range}");
             return Err(Refusal::state(found, "").in_file(self.file));
         }
         let note =
             format!("{left_out} of {all} samples left out, which are outside the maps, {range}");
-        let column = |values: Vec<f64>| {
-            let kept = kept.iter().filter_map(|&sample| values.get(sample));
-            kept.copied().collect()
-        };
-        let record = Record {
-            lines: kept.iter().map(|&sample| self.lines[sample]).collect(),
-            positions: column(self.positions),
-            forces: self.forces.map(column),
-            file: self.file,
-        };
-        Ok((record, (left_out > 0).then_some(note)))
+        Ok((self.only(&kept), (left_out > 0).then_some(note)))
     }
 
     /// This record without its lateral forces, if it has any, for maps that have none.
@@ -442,13 +475,14 @@ impl Record {
         self
     }
 
-    /// The forces that `map` expects at `depth` (m) at the samples, N; no lateral ones if it has none.
+    /// The forces that `map` expects at the samples, N, at their own depths or, where the record has none, at `depth` (m); no lateral
+    /// ones if it has none.
     ///
     /// # Errors
-    /// The first sample outside the map's lateral positions, with its line; a depth outside its depths; a record with lateral forces
-    /// where the map has none.
+    /// The first sample outside the map's lateral positions, or at a depth outside its depths, with its line; a depth outside its depths;
+    /// a record with lateral forces where the map has none.
     ///
-    /// Implements: TRC-008, TRC-014, TRC-024, CLI-140.
+    /// Implements: TRC-008, TRC-014, TRC-024, TRC-082, CLI-140.
     pub fn expected(&self, map: &ForceTable, depth: f64) -> Result<Force<Vec<f64>>, Refusal> {
         let other = Refusal::state(
             "the record has lateral forces, and the maps have none",
@@ -456,36 +490,49 @@ impl Record {
         );
         let is_other = !self.forces.lateral.is_empty() && map.lateral().is_none();
         other.in_file(&*self.file).when(is_other)?;
-        let outside = |&position: &f64| !is_over(map, position);
-        let expected = match self.positions.iter().position(outside) {
-            Some(sample) => {
-                let position = mm(self.positions[sample]);
-                let range = range(map);
-                let found =
-                    format!("position {position} mm is outside the maps, which have {range}");
-                Err(Refusal::state(found, "leave it out, or use --trim").at(self.lines[sample]))
+        let mut samples = 0..self.positions.len();
+        let expected = match samples.find(|&at| !self.is_over(map, at)) {
+            Some(at) => {
+                let mut found = format!("position {} mm", mm(self.positions[at]));
+                if let Some(depth) = self.depths.get(at) {
+                    found += &format!(" at a depth of {} mm", mm(*depth));
+                }
+                found += &format!(" is outside the maps, which have {}", self.range(map));
+                Err(Refusal::state(found, "leave it out, or use --trim").at(self.lines[at]))
             }
-            None => map.sweep(depth, &self.positions),
+            None => match self.depths() {
+                Some(depths) => map.path(depths, &self.positions),
+                None => map.sweep(depth, &self.positions),
+            },
         };
         expected.map_err(|refusal| refusal.in_file(&self.file))
     }
+
+    /// Whether sample `at` is within the lateral positions of `map`, and its depth within the depths.
+    fn is_over(&self, map: &ForceTable, at: usize) -> bool {
+        let depth = self.depths.get(at);
+        is_within(map.laterals(), self.positions[at])
+            && depth.is_none_or(|depth| is_within(map.depths(), *depth))
+    }
+
+    /// The poses of `map` in words.
+    fn range(&self, map: &ForceTable) -> String {
+        let ends = |axis: &[f64]| format!("{} to {} mm", mm(axis[0]), mm(axis[axis.len() - 1]));
+        match self.depths() {
+            None => ends(map.laterals()),
+            Some(_) => format!(
+                "{} at depths of {}",
+                ends(map.laterals()),
+                ends(map.depths())
+            ),
+        }
+    }
 }
 
-/// Whether a position (m) is within the lateral positions of `map`.
-fn is_over(map: &ForceTable, position: f64) -> bool {
-    let laterals = map.laterals();
-    let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
+/// Whether a position (m) is within the ends of an axis.
+fn is_within(axis: &[f64], position: f64) -> bool {
+    let (first, last) = (axis[0], axis[axis.len() - 1]);
     (first - SAME_POSITION..=last + SAME_POSITION).contains(&position)
-}
-
-/// The lateral positions of `map` in words.
-fn range(map: &ForceTable) -> String {
-    let laterals = map.laterals();
-    format!(
-        "{} to {} mm",
-        mm(laterals[0]),
-        mm(laterals[laterals.len() - 1])
-    )
 }
 
 /// What the detector refuses, in the words of a trace.

@@ -3,6 +3,7 @@ use crate::force_map::{Hypotheses, Matrix};
 use palpate_asserts::{assert_cases, assert_error};
 
 mod judge;
+mod path;
 mod relations;
 
 const EXAMPLE: &str = "position_mm,lateral_force_n,normal_force_n\n-1,0.25,1.5\n0.5,-0.5,1.25\n";

@@ -45,6 +45,13 @@ pub struct Findings {
     pub theories: Vec<TheoryFindings>,
 }
 
+impl Findings {
+    /// Whether a hand could track the path over a map.
+    pub(super) fn have_hand(&self) -> bool {
+        self.maps.iter().any(|map| map.gamma_of_hand.is_some())
+    }
+}
+
 /// Everything that the report says in numbers.
 ///
 /// # Errors

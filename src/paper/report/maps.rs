@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::hand::GammaOfHand;
 use super::nuisances::GammaLeft;
 use super::quality::{Quality, warnings};
 use super::text::name_of_map;
@@ -43,6 +44,9 @@ pub struct MapFindings {
     pub gamma: GammaByChannel,
     /// What is left of it if more is unknown.
     pub gamma_left: GammaLeft,
+    /// γ where a hand tracks the path; none where the maps do not reach as far as the hand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gamma_of_hand: Option<GammaOfHand>,
     /// What the detector makes of γ of both channels.
     #[serde(flatten)]
     pub detection: Detection,
@@ -180,6 +184,7 @@ pub(super) fn of_map(
         peak_lateral: peak(signal.lateral),
         gamma,
         gamma_left,
+        gamma_of_hand: GammaOfHand::of(reference, map, settings.noise_sd_n, depth),
         detection,
         warnings: warnings(quality.as_ref(), gamma.both),
         quality,

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `paper.rs` | the numbers that the paper prints |
 //! | `maps.rs` | what each map says: signal, signal-to-noise ratios, thresholds |
+//! | `hand.rs` | what is left of γ where a hand tracks the path |
 //! | `nuisances.rs` | what is left of γ where more is unknown than the noise |
 //! | `findings.rs` | what the run found, all together |
 //! | `inputs.rs` | what a study says of the inputs' uncertainty |
@@ -50,6 +51,7 @@
 mod comparison;
 mod figures;
 mod findings;
+mod hand;
 pub mod html;
 mod inputs;
 mod maps;
@@ -66,6 +68,7 @@ mod theories;
 pub use comparison::{Comparison, Value};
 pub use figures::figures;
 pub use findings::{Findings, findings};
+pub use hand::GammaOfHand;
 pub use html::html;
 pub use maps::{Detection, GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold};
 pub use nuisances::{GammaBeside, GammaLeft};

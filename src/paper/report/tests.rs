@@ -3,6 +3,7 @@
 // Expected values keep the digits that their source printed.
 #![allow(clippy::excessive_precision)]
 
+mod hand;
 mod inputs;
 mod nuisances;
 mod outputs;

@@ -133,10 +133,13 @@ pub(super) struct MapsOrBank {
 /// Where the probe was.
 #[derive(Debug, Args)]
 pub(super) struct Sweep {
-    /// Indentation depth of the sweep in mm, or of each of several [default with a bank: that of the bank]
-    #[arg(long = "depth-mm", value_name = "D", value_parser = position, value_delimiter = ',', allow_hyphen_values = true, required_unless_present = "bank")]
+    /// Indentation depth of the sweep in mm, or of each of several [default: a column depth_mm, else that of the bank]
+    #[arg(long = "depth-mm", value_name = "D", value_parser = position, value_delimiter = ',', allow_hyphen_values = true)]
     pub depths: Vec<f64>,
-    /// Largest expected error of --depth-mm, in mm [default: 0.3]; with --model exact
+    /// Standard deviation of the error of each depth of a column depth_mm, in mm [default: 0]
+    #[arg(long = "depth-noise-mm", value_name = "S", value_parser = length_or_zero, allow_hyphen_values = true)]
+    pub depth_noise: Option<f64>,
+    /// Largest expected error of the depth, or of all depths alike, in mm [default: 0.3]; with --model exact
     #[arg(long = "depth-tolerance-mm", value_name = "T", value_parser = length_or_zero, allow_hyphen_values = true)]
     pub depth_tolerance: Option<f64>,
     /// Drops samples outside the lateral range of the maps, and reports how many

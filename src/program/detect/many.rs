@@ -67,25 +67,22 @@ struct Answer {
 /// Judges each record, and prints a line for each.
 ///
 /// Implements: CLI-175.
-pub fn detect(asked: &Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
+pub fn detect(asked: Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
     let bar = bar(traces.len(), "records");
     let mut answers = BTreeMap::new();
-    // One detector for all records over the same positions.
-    let mut alike: BTreeMap<Vec<u64>, Vec<(usize, Record)>> = BTreeMap::new();
+    // One detector for all records along the same path.
+    let mut alike: BTreeMap<Vec<u64>, Vec<(usize, Vec<Record>)>> = BTreeMap::new();
     // What is said of several files is said once.
     let mut notes: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for (number, path) in traces.iter().enumerate() {
         match asked.read(path) {
-            Ok((record, told)) => {
+            Ok((passes, told)) => {
                 for text in told {
                     let files: &mut Vec<_> = notes.entry(text).or_default();
-                    files.push(record.file().to_owned());
+                    files.push(passes[0].file().to_owned());
                 }
-                let positions = record.positions().iter().map(|x| x.to_bits());
-                let channels = [u64::from(record.forces().lateral.is_empty())];
-                let alike = alike.entry(channels.into_iter().chain(positions).collect());
-                let alike = alike.or_default();
-                alike.push((number, record));
+                let path = passes.iter().map(path_of).collect::<Vec<_>>().concat();
+                alike.entry(path).or_default().push((number, passes));
             }
             Err(error) => {
                 answers.insert(number, refused(&path.display().to_string(), &error));
@@ -99,17 +96,19 @@ pub fn detect(asked: &Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
         };
         note(format!("{}{more}", files[0]), &text);
     }
-    let of = |record: &Record| asked.detector(&asked.sweeps(std::slice::from_ref(record)));
-    let judge = |records: Vec<(usize, Record)>| {
+    let passes = alike.values().flatten().flat_map(|(_, passes)| passes);
+    let asked = &asked.with_gels(passes)?;
+    let of = |passes: &[Record]| asked.detector(&asked.sweeps(passes));
+    let judge = |records: Vec<(usize, Vec<Record>)>| {
         let first = of(&records[0].1);
-        let judge = |(number, record): &(usize, Record)| {
+        let judge = |(number, passes): &(usize, Vec<Record>)| {
             bar.inc(1);
             let answer = match &first {
-                Ok(detector) => answer(asked, detector, record),
+                Ok(detector) => answer(asked, detector, passes),
                 // The refusal names the file: it is another for each.
-                Err(_) => of(record).and_then(|own| answer(asked, &own, record)),
+                Err(_) => of(passes).and_then(|own| answer(asked, &own, passes)),
             };
-            let answer = answer.unwrap_or_else(|refusal| refused(record.file(), &refusal));
+            let answer = answer.unwrap_or_else(|refusal| refused(passes[0].file(), &refusal));
             (*number, answer)
         };
         records.par_iter().map(judge).collect::<Vec<_>>()
@@ -121,15 +120,29 @@ pub fn detect(asked: &Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
     tell(asked.arguments.format, answers.into_values().collect())
 }
 
-/// What is said of a record by the detector of its positions.
-fn answer(asked: &Asked<'_>, detector: &Detector<'_>, record: &Record) -> Result<Answer, Refusal> {
-    let records = std::slice::from_ref(record);
+/// Where a pass has which forces, as numbers.
+fn path_of(pass: &Record) -> Vec<u64> {
+    let positions = pass
+        .positions()
+        .iter()
+        .chain(pass.depths().into_iter().flatten());
+    let numbers = positions.map(|x| x.to_bits());
+    let lists = [pass.forces().lateral.len(), pass.positions().len()].map(|of| of as u64);
+    lists.into_iter().chain(numbers).collect()
+}
+
+/// What is said of a record by the detector of its path.
+fn answer(
+    asked: &Asked<'_>,
+    detector: &Detector<'_>,
+    records: &[Record],
+) -> Result<Answer, Refusal> {
     let (answer, place) = detector.judge(&asked.sweeps(records))?;
     let rows = answer.rows(asked.bank().zip(place.as_ref()));
     Ok(Answer {
         is_judged: Some(answer.decision.is_some()),
-        glitches: answer.glitches.first().copied().unwrap_or(0),
-        rows: asked.rows(&[record.file().into()], records, rows),
+        glitches: answer.glitches.iter().sum(),
+        rows: asked.rows(&[records[0].file().into()], records, rows),
     })
 }
 

@@ -21,6 +21,7 @@ use palpate::csv::Layout;
 use palpate::detect::Decision;
 use palpate::force_map::{ForceMap, ForceTable, Hypotheses};
 use palpate::rows::Rows;
+use palpate::text::extremes;
 use palpate::trace::{
     Cause, Fit, Motion, Noise, Question, Record, Trace, Unknown, in_words, reasons,
 };
@@ -48,7 +49,7 @@ pub fn detect(arguments: &DetectArguments) -> Result<(), CliError> {
 
 /// The record in a file, or of standard input for `-`.
 ///
-/// Implements: CLI-175.
+/// Implements: CLI-175, CLI-201.
 fn read(arguments: &DetectArguments, layout: &Layout, path: &Path) -> Result<Noted, CliError> {
     let trace = if path == Path::new("-") {
         let text = palpate::file::text_of(std::io::stdin());
@@ -59,8 +60,35 @@ fn read(arguments: &DetectArguments, layout: &Layout, path: &Path) -> Result<Not
     };
     let notes = trace.notes().to_vec();
     let motion = arguments.sweep.velocity.zip(arguments.sweep.start);
-    let record = trace.record(motion.map(|(velocity, start)| Motion { velocity, start }))?;
+    let mut record = trace.record(motion.map(|(velocity, start)| Motion { velocity, start }))?;
+    if let Some(sd) = arguments.sweep.depth_noise {
+        record = record.with_depth_sd(sd)?;
+    }
     Ok((record, notes))
+}
+
+/// Checks that each sample of a record has one depth: its own, that of --depth-mm or else the only one of the `bank`.
+///
+/// Implements: CLI-200.
+fn check_depths(
+    arguments: &DetectArguments,
+    (record, _): &Noted,
+    bank: Option<&Bank>,
+) -> Result<(), CliError> {
+    let (file, is_given) = (record.file(), !arguments.sweep.depths.is_empty());
+    let of_bank = bank.map_or(0, |bank| bank.probe_depths().len());
+    match record.depths() {
+        Some(_) if is_given => refuse!("{file}: each sample has its depth; leave out --depth-mm"),
+        None if !is_given && of_bank == 0 => {
+            refuse!("{file}: the samples have no depths; give --depth-mm, or a column depth_mm")
+        }
+        None if !is_given && of_bank > 1 => {
+            refuse!(
+                "{file}: the samples have no depths, and the bank has {of_bank}; give --depth-mm, or a column depth_mm"
+            )
+        }
+        _ => Ok(()),
+    }
 }
 
 /// A record, and what a person should know of how it was read.
@@ -76,6 +104,7 @@ fn told((record, notes): Noted) -> Record {
 fn by_maps(arguments: &DetectArguments, record: Noted, noise: Noise) -> Result<(), CliError> {
     let maps = TwoMaps::read(arguments)?;
     let (table, file) = (maps.reference.table(), maps.reference_file);
+    check_depths(arguments, &record, None)?;
     let depth = depth(arguments)?.unwrap_or(0.0);
     let mut warnings = Warnings::default();
     let hypotheses = maps.hypotheses(&mut warnings)?;
@@ -109,8 +138,9 @@ fn by_bank(
 ) -> Result<(), CliError> {
     let bank = Bank::read(path)?;
     let (files, table) = (&arguments.hypotheses, bank.reference().table());
+    check_depths(arguments, &record, Some(&bank))?;
     let depth = depth(arguments)?.unwrap_or(bank.depth());
-    let record = told(trimmed(arguments, record, table, true)?);
+    let record = told(trimmed(arguments, record, bank.base(), true)?);
     let prior = files.prior.as_ref();
     let prior = prior.map(|file| bank.read_prior(file)).transpose()?;
     let mut warnings = Warnings::default();
@@ -205,7 +235,7 @@ fn depth(arguments: &DetectArguments) -> Result<Option<f64>, CliError> {
     }
 }
 
-/// What was asked of any model of the records of these traces.
+/// What was asked of any model of the records of these traces, or of their passes.
 ///
 /// Implements: CLI-045.
 fn asked(
@@ -216,21 +246,30 @@ fn asked(
 ) -> Rows {
     let mut rows = Rows::default();
     let path = |path: &Path| path.display().to_string();
-    match (traces, depths, records) {
-        ([trace], [depth], [record]) => {
+    let samples: Vec<_> = records.iter().map(|of| of.positions().len()).collect();
+    let own = records
+        .iter()
+        .flat_map(|record| record.depths().into_iter().flatten());
+    let own = extremes(own.copied());
+    match (traces, depths, &samples[..], own) {
+        ([trace], _, all, Some(range)) => {
             rows.value("trace", path(trace));
-            rows.value("samples", record.positions().len());
+            rows.value("samples", all.iter().sum::<usize>());
+            rows.value("depth_range_m", json!(range));
+        }
+        ([trace], [depth], [samples], None) => {
+            rows.value("trace", path(trace));
+            rows.value("samples", *samples);
             rows.value("depth_m", *depth);
         }
-        (traces, ..) => {
+        (traces, depths, samples, own) => {
             let traces: Vec<_> = traces.iter().map(|of| path(of)).collect();
-            let samples: Vec<_> = records
-                .iter()
-                .map(|record| record.positions().len())
-                .collect();
             rows.value("traces", json!(traces));
             rows.value("samples", json!(samples));
-            rows.value("depths_m", json!(depths));
+            match own {
+                Some(range) => rows.value("depth_range_m", json!(range)),
+                None => rows.value("depths_m", json!(depths)),
+            }
         }
     }
     let files = &arguments.hypotheses;

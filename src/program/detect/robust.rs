@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::arguments::{AnswerFormat, ModelName};
-use super::{DetectArguments, Noted, TwoMaps, Warnings, asked, many, tell, told, trimmed};
+use super::{DetectArguments, TwoMaps, Warnings, asked, check_depths, many, tell, trimmed};
 use crate::CliError;
 use crate::error::refuse;
 use crate::numbers::for_each;
@@ -109,19 +109,18 @@ pub fn detect(arguments: &DetectArguments, layout: &Layout) -> Result<(), CliErr
         references: Vec::new(),
         changes: BTreeMap::new(),
     };
-    let asked = asked.with_gels()?;
     if is_one {
-        one(&asked, &traces)
+        one(asked, &traces)
     } else {
-        many::detect(&asked, &traces)
+        many::detect(asked, &traces)
     }
 }
 
 /// Judges sweeps of one place.
-fn one(asked: &Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
+fn one(asked: Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
     let arguments = asked.arguments;
-    let records = traces.iter().map(|path| asked.read(path).map(told));
-    let records = records.collect::<Result<Vec<_>, _>>()?;
+    let records = asked.read_all(traces)?;
+    let asked = asked.with_gels(records.iter())?;
     let sweeps = asked.sweeps(&records);
     let (answer, place) = asked.detector(&sweeps)?.judge(&sweeps)?;
     for (sweep, replaced) in sweeps.iter().zip(&answer.glitches) {
@@ -195,29 +194,53 @@ pub struct Asked<'a> {
     /// Of each sweep of a place, m.
     depths: Vec<f64>,
     references: Vec<Record>,
-    /// The gels beside that of the maps, by the bits of the depth.
-    changes: BTreeMap<u64, Option<GelChanges>>,
+    /// The gels beside that of the maps, by the bits of the depth; none of the depths of samples.
+    changes: BTreeMap<Option<u64>, Option<GelChanges>>,
 }
 
 impl<'a> Asked<'a> {
-    /// The same with the reference sweeps, and the gels beside that of the maps.
-    fn with_gels(mut self) -> Result<Asked<'a>, CliError> {
+    /// The passes of all records of these traces, whose notes are printed.
+    fn read_all(&self, traces: &[PathBuf]) -> Result<Vec<Record>, CliError> {
+        let passes = traces.iter().map(|path| {
+            let (passes, notes) = self.read(path)?;
+            notes.iter().for_each(|text| note(passes[0].file(), text));
+            Ok(passes)
+        });
+        let passes = passes.collect::<Result<Vec<_>, CliError>>()?;
+        Ok(passes.into_iter().flatten().collect())
+    }
+
+    /// The same with the reference sweeps, and the gels beside that of the maps under the `records`.
+    ///
+    /// Implements: ROB-080.
+    pub fn with_gels<'r>(
+        mut self,
+        records: impl Iterator<Item = &'r Record>,
+    ) -> Result<Asked<'a>, CliError> {
         let model = &self.arguments.model;
-        let references = model.reference_sweeps.iter();
-        let references = references.map(|path| self.read(path).map(told));
-        self.references = references.collect::<Result<_, _>>()?;
+        let references = self.read_all(&model.reference_sweeps)?;
         let file = model.gel_uncertainty.as_ref();
         let uncertainty = file.map(|file| GelUncertainty::read(file)).transpose()?;
         let uncertainty = uncertainty.unwrap_or_default().beside(self.question.known);
         let reference = self.reference();
         let name = reference.phantom().map_or("", Phantom::name);
-        for &depth in &self.depths {
+        let mut all: Vec<&Record> = records.collect();
+        all.extend(&references);
+        let (own, even): (Vec<_>, Vec<_>) =
+            (all.into_iter()).partition(|record| record.depths().is_some());
+        for &depth in self.depths.iter().filter(|_| !even.is_empty()) {
             self.bank().map_or(Ok(()), |bank| bank.check_depth(depth))?;
-            if let Entry::Vacant(entry) = self.changes.entry(depth.to_bits()) {
+            if let Entry::Vacant(entry) = self.changes.entry(Some(depth.to_bits())) {
                 let found = GelChanges::new(reference, depth, &uncertainty);
                 entry.insert(found.map_err(CliError::fem(name))?);
             }
         }
+        if !own.is_empty() {
+            let found = GelChanges::along(reference, &own, &uncertainty);
+            self.changes
+                .insert(None, found.map_err(CliError::fem(name))?);
+        }
+        self.references = references;
         Ok(self)
     }
 
@@ -237,19 +260,25 @@ impl<'a> Asked<'a> {
         }
     }
 
-    /// Reads a record, without what is outside the maps if --trim is given.
-    pub(super) fn read(&self, path: &Path) -> Result<Noted, CliError> {
+    /// Reads the passes of a record, without what is outside the maps if --trim is given.
+    ///
+    /// Implements: ROB-083.
+    pub(super) fn read(&self, path: &Path) -> Result<(Vec<Record>, Vec<String>), CliError> {
         let record = super::read(self.arguments, self.layout, path)?;
-        let have_lateral = match self.between {
-            Between::Maps(hypotheses, _) => hypotheses.have_lateral(),
-            Between::Bank(..) => true,
+        check_depths(self.arguments, &record, self.bank())?;
+        let (have_lateral, table) = match self.between {
+            Between::Maps(hypotheses, map) => (hypotheses.have_lateral(), map.table()),
+            Between::Bank(bank, _) => (true, bank.base()),
         };
-        trimmed(
-            self.arguments,
-            record,
-            self.reference().table(),
-            have_lateral,
-        )
+        let (record, mut notes) = trimmed(self.arguments, record, table, have_lateral)?;
+        let (passes, left_out) = self.question.passes(&record, self.reference());
+        if left_out > 0 {
+            let count = record.positions().len();
+            notes.push(format!(
+                "{left_out} of {count} samples left out: their passes are too short"
+            ));
+        }
+        Ok((passes, notes))
     }
 
     /// The sweeps of a place, and behind them the reference sweeps, at the first depth.
@@ -260,11 +289,17 @@ impl<'a> Asked<'a> {
             RobustSweep {
                 record,
                 depth,
-                changes: self.changes[&depth.to_bits()].as_ref(),
+                changes: self.changes(record, depth),
                 is_reference: number >= records.len(),
             }
         };
         all.map(sweep).collect()
+    }
+
+    /// The gels beside that of the maps under a record at a depth, or at its own depths.
+    fn changes(&self, record: &Record, depth: f64) -> Option<&GelChanges> {
+        let key = record.depths().is_none().then_some(depth.to_bits());
+        self.changes.get(&key)?.as_ref()
     }
 
     /// The detector for records over the positions of these sweeps.

@@ -48,7 +48,7 @@ fn what_is_no_bank_is_refused() {
     let of_depths = |depths| map(Some((1.0, 6.0, 8.0)), depths);
     let other = "maps[3]: depths_m[0] = 0.0039, but must be 0.004 as in maps[0]";
     refused(&|maps| maps[3] = of_depths(&[3.9e-3]), other);
-    let two = "maps[3]: it has 2 depths of the probe; give one";
+    let two = "maps[3]: it has 2 depths of the probe; give 1 as in maps[0]";
     refused(&|maps| maps[3] = of_depths(&[3.9e-3, 4e-3]), two);
     let cut = |map: &ForceMap| map.at_laterals(&[0.0, 5e-4]).unwrap();
     let narrow = "maps[1]: its lateral positions are not those of the reference; give the same";

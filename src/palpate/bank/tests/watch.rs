@@ -1,6 +1,6 @@
 //! Sweeps that are judged while they are taken.
 
-use super::locate::{SD, USUAL, all, record, search};
+use super::locate::{SD, USUAL, all, deep, path, record, search};
 use super::*;
 use crate::detect::Decision;
 use crate::detect::sequential::{Evidence, Wald};
@@ -483,4 +483,41 @@ fn false_answers_are_as_rare_as_stated_however_often_one_looks() {
 #[ignore = "100,000 records of each kind"]
 fn false_answers_of_many_records_are_as_rare_as_stated() {
     check_rates(100_000);
+}
+
+// Verifies: SEQ-030, SEQ-025, SEQ-031, SEQ-024.
+#[test]
+fn samples_at_depths_of_their_own_have_the_last_answer_of_the_whole_record() {
+    use Unknown::{Depth, Drift, Gain, Offset};
+    let bank = deep();
+    for unknown in [
+        &[][..],
+        USUAL,
+        &[Depth, Offset],
+        &[Offset, Drift, Gain, Depth],
+    ] {
+        for (x, seed) in [(Some(1.3), 4), (None, 5)] {
+            let record = path(&bank, x, Some(seed));
+            let batch = search(&bank, unknown, Criterion::MaximumAPosteriori);
+            let expected = batch.locate(&record).unwrap();
+            let mut watcher = Watcher::new(&bank, &question(unknown)).unwrap();
+            let depths = record.depths().unwrap();
+            for ((x, lateral, normal), depth) in samples(&record).into_iter().zip(depths) {
+                watcher.push_at(x, Some(*depth), lateral, normal).unwrap();
+            }
+            let found = watcher.answer().unwrap();
+            let off = (found.theta - expected.theta_mixture).abs();
+            assert!(off < 1e-9, "{unknown:?}: {off:e}");
+            // Too deep for the bank, and no depth at all.
+            watcher.push_at(0.0, Some(4.5e-3), Some(0.0), 1.0).unwrap();
+            watcher
+                .push_at(0.0, Some(f64::NAN), Some(0.0), 1.0)
+                .unwrap();
+            let error = watcher.push(0.0, Some(0.0), 1.0).unwrap_err().to_string();
+            assert!(error.contains("the bank has several depths"), "{error}");
+            let after = watcher.answer().unwrap();
+            assert_eq!((after.outside, after.missing), (1, 1));
+            assert_eq!((after.theta, after.samples), (found.theta, found.samples));
+        }
+    }
 }

@@ -23,6 +23,7 @@ use hidapi::HidError;
 pub use choose::Wanted;
 pub use list::{Identity, Listed, Profile, list, no_permission, udev_rule};
 
+use super::device::pass_over;
 use super::{
     Capabilities, Control, DeviceError, DeviceState, ForceReport, HapticDevice, PositionReport,
     Received,
@@ -115,18 +116,6 @@ impl RealDevice {
     /// Which device it is.
     pub fn identity(&self) -> &Identity {
         &self.identity
-    }
-
-    /// Throws away the reports of some time: those that were made before the device was enabled may
-    /// tell of a fault that is cleared.
-    ///
-    /// Implements: HID-033.
-    fn pass_over(&mut self, time: Duration) -> Result<(), DeviceError> {
-        let began = Instant::now();
-        while let Some(left) = time.checked_sub(began.elapsed()) {
-            self.read(left)?;
-        }
-        Ok(())
     }
 
     /// What failed, with the device's name.
@@ -229,7 +218,10 @@ impl HapticDevice for RealDevice {
             .send_feature_report(&control.encode())
             .map_err(|error| self.failed("send feature report 4", &message(&error)))?;
         match control {
-            Control::Enable => self.pass_over(2 * self.period),
+            Control::Enable => {
+                let time = 2 * self.period;
+                pass_over(self, time)
+            }
             Control::Stop | Control::ClearFault => Ok(()),
         }
     }

@@ -15,7 +15,7 @@ mod trajectory;
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use handle::Handle;
+pub(crate) use handle::Handle;
 pub use handle::Mechanics;
 pub use palpate_core::hid::PAPER;
 pub use trajectory::Trajectory;

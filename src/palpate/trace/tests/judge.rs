@@ -123,6 +123,9 @@ pub fn record(positions: Vec<f64>, of: impl Fn(usize) -> [f64; 2]) -> Record {
         lines: (2..).take(positions.len()).collect(),
         forces: Force::new(column(0), column(1)),
         positions,
+        depths: Vec::new(),
+        depth_sd: 0.0,
+        place: None,
     }
 }
 

@@ -1,0 +1,226 @@
+//! `palpate simulate`: records of a path over a gel (`spec/simulation.md`).
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::CliError;
+use super::detect::arguments::NoiseSd;
+use super::error::refuse;
+use super::numbers::{
+    at_least_0, length, length_or_zero, newtons_or_zero, position, several, share_below_1, velocity,
+};
+use super::output::{make_folder, print, write};
+use super::solve::phantom;
+use palpate::fem::{Contact, MESH_SIZE, Model};
+use palpate::force::Force;
+use palpate::force_map::ForceMap;
+use palpate::simulation::{Hand, Motion, Path, Sensor, Simulation, Tremor};
+
+/// The distance of the rows and columns of a phantom's map, and how much further than the path it reaches, m.
+const STEP: f64 = 0.5e-3;
+const MARGIN: f64 = 1e-3;
+
+/// Arguments of `palpate simulate`.
+#[derive(Debug, Args)]
+pub struct SimulateArguments {
+    /// Force map of the gel, with lateral forces and depths from 0 on
+    #[arg(long, value_name = "MAP", required_unless_present = "phantom")]
+    map: Option<PathBuf>,
+    /// The gel, in place of its map: a built-in phantom or a phantom file
+    #[arg(long, value_name = "NAME|FILE", conflicts_with = "map")]
+    phantom: Option<String>,
+    #[command(flatten)]
+    path: PathArguments,
+    #[command(flatten)]
+    motion: MotionArguments,
+    #[command(flatten)]
+    sensor: SensorArguments,
+    /// Seed of all that is random
+    #[arg(long, value_name = "SEED", default_value_t = 1999)]
+    seed: u64,
+    /// Number of records, which differ in all that is random
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    records: u32,
+    /// New folder for the records, record-0001.csv and so on [default: a single record is printed]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Where the probe is sent.
+#[derive(Debug, Args)]
+struct PathArguments {
+    /// Depths of the probe in mm, a pass for each in turn, there and back: a list such as 1,2,3,4
+    #[arg(long = "depths-mm", value_name = "LIST", value_parser = length, value_delimiter = ',', allow_hyphen_values = true, required_unless_present = "path")]
+    depths: Vec<f64>,
+    /// Where a pass begins and ends, in mm
+    #[arg(long = "from-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "-8")]
+    from: f64,
+    #[arg(long = "to-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "8")]
+    to: f64,
+    /// Speed of a pass in mm/s
+    #[arg(long = "speed-mm-s", value_name = "V", value_parser = velocity, allow_hyphen_values = true, default_value = "10")]
+    speed: f64,
+    /// Any other path: a CSV file with time_s, position_mm and depth_mm of waypoints
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["depths", "from", "to", "speed"])]
+    path: Option<PathBuf>,
+    /// Samples per second
+    #[arg(long, value_name = "HZ", value_parser = at_least_0, allow_hyphen_values = true, default_value = "100")]
+    rate_hz: f64,
+}
+
+/// What leads the probe, and what the gel does beside its elastic force.
+#[derive(Debug, Args)]
+struct MotionArguments {
+    /// A hand of a mass in kg, a damping in N·s/m and a stiffness in N/m tracks the path [default: a stage follows it]
+    #[arg(long, value_name = "M,B,K", value_parser = several::<3>, allow_hyphen_values = true)]
+    hand: Option<[f64; 3]>,
+    /// Root mean square of the tremor along x and along the depth, in mm
+    #[arg(long = "tremor-mm", value_name = "A", value_parser = length_or_zero, allow_hyphen_values = true, default_value = "0")]
+    tremor: f64,
+    /// Frequency of the tremor
+    #[arg(long, value_name = "HZ", value_parser = at_least_0, allow_hyphen_values = true, default_value = "10")]
+    tremor_hz: f64,
+    /// Share of the force that relaxes, and the time constant of that in s
+    #[arg(long, value_name = "G,S", value_parser = several::<2>, allow_hyphen_values = true)]
+    relaxation: Option<[f64; 2]>,
+    /// Coefficient of friction between probe and gel
+    #[arg(long, value_name = "MU", value_parser = at_least_0, allow_hyphen_values = true, default_value = "0")]
+    friction: f64,
+}
+
+/// The sensor.
+#[derive(Debug, Args)]
+struct SensorArguments {
+    #[command(flatten)]
+    noise_sd: NoiseSd,
+    /// Correlation of the noise of neighbouring samples
+    #[arg(long, value_name = "R", value_parser = share_below_1, allow_hyphen_values = true, default_value = "0")]
+    correlation: f64,
+    /// Standard deviation of the offset of each force from record to record, in N
+    #[arg(long, value_name = "S", value_parser = newtons_or_zero, allow_hyphen_values = true, default_value = "0")]
+    offset_sd_n: f64,
+    /// Standard deviation of the drift of each force over a record, in N
+    #[arg(long, value_name = "S", value_parser = newtons_or_zero, allow_hyphen_values = true, default_value = "0")]
+    drift_sd_n: f64,
+    /// Smallest difference of two forces, in N
+    #[arg(long, value_name = "Q", value_parser = newtons_or_zero, allow_hyphen_values = true, default_value = "0")]
+    resolution_n: f64,
+    /// Standard deviation of the error of each measured depth, in mm
+    #[arg(long = "depth-noise-mm", value_name = "S", value_parser = length_or_zero, allow_hyphen_values = true, default_value = "0")]
+    depth_noise: f64,
+    /// Leaves out the column of depths, as of a laboratory that states one depth
+    #[arg(long)]
+    no_depths: bool,
+}
+
+/// Runs the command.
+///
+/// Implements: CLI-230, CLI-231, CLI-232.
+pub fn simulate(arguments: &SimulateArguments) -> Result<(), CliError> {
+    if arguments.records > 1 && arguments.out.is_none() {
+        refuse!("several records need --out DIR");
+    }
+    if let Some(folder) = arguments.out.as_ref().filter(|folder| folder.exists()) {
+        refuse!("{} already exists; choose another --out", folder.display());
+    }
+    let path = arguments.path.path()?;
+    let map = match (&arguments.map, &arguments.phantom) {
+        (Some(file), _) => ForceMap::read(file)?,
+        (None, name) => map(name.as_deref().unwrap_or_default(), &path)?,
+    };
+    let (motion, sensor) = (&arguments.motion, &arguments.sensor);
+    let simulation = Simulation {
+        gel: map.table(),
+        path: &path,
+        motion: motion.motion(),
+        relaxation: motion.relaxation()?,
+        friction: motion.friction,
+        sensor: sensor.sensor(),
+        seed: arguments.seed,
+    };
+    let record = |number: u32| -> Result<String, CliError> {
+        let record = simulation.record(number.into())?;
+        Ok(record.to_csv(!sensor.no_depths))
+    };
+    let Some(folder) = &arguments.out else {
+        return print(&record(1)?);
+    };
+    make_folder(folder)?;
+    for number in 1..=arguments.records {
+        write(
+            &folder.join(format!("record-{number:04}.csv")),
+            &record(number)?,
+        )?;
+    }
+    Ok(())
+}
+
+/// The forces of a phantom along a path and a little beyond.
+fn map(name: &str, path: &Path) -> Result<ForceMap, CliError> {
+    let phantom = phantom(name)?;
+    let ([low, high], depth) = path.extent();
+    let [first, last] = [(low - MARGIN) / STEP, (high + MARGIN) / STEP];
+    let axis = |first: f64, last: f64| -> Vec<f64> {
+        let entries = first.floor() as i32..=last.ceil() as i32;
+        entries.map(|k| STEP * f64::from(k)).collect()
+    };
+    let (depths, laterals) = (axis(0.0, (depth + MARGIN) / STEP), axis(first, last));
+    let model = Model::new(&phantom, MESH_SIZE, Contact::default());
+    let map = model.and_then(|model| model.map(&depths, &laterals, &|_| ()));
+    map.map_err(CliError::fem(phantom.name()))
+}
+
+impl PathArguments {
+    fn path(&self) -> Result<Path, CliError> {
+        match &self.path {
+            Some(file) => {
+                let path = |text: &str, name: &str| Path::from_csv(text, name, self.rate_hz);
+                Ok(palpate::file::read(file, path)?)
+            }
+            None => {
+                let ends = [self.from, self.to];
+                Ok(Path::passes(&self.depths, ends, self.speed, self.rate_hz)?)
+            }
+        }
+    }
+}
+
+impl MotionArguments {
+    fn motion(&self) -> Motion {
+        let hand = self.hand.map(|[mass, damping, stiffness]| Hand {
+            mass,
+            damping,
+            stiffness,
+        });
+        let tremor = Tremor {
+            rms: self.tremor,
+            frequency: self.tremor_hz,
+        };
+        Motion {
+            hand,
+            tremor: (self.tremor > 0.0).then_some(tremor),
+        }
+    }
+
+    fn relaxation(&self) -> Result<Option<[f64; 2]>, CliError> {
+        match self.relaxation {
+            None => Ok(None),
+            Some([share, time]) if share < 1.0 && time > 0.0 => Ok(Some([share, time])),
+            Some(_) => refuse!("--relaxation needs a share below 1 and a time above 0"),
+        }
+    }
+}
+
+impl SensorArguments {
+    fn sensor(&self) -> Sensor {
+        Sensor {
+            noise_sd: self.noise_sd.get().unwrap_or(Force::new(0.0, 0.0)),
+            correlation: self.correlation,
+            offset_sd: self.offset_sd_n,
+            drift_sd: self.drift_sd_n,
+            resolution: self.resolution_n,
+            depth_sd: self.depth_noise,
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! `palpate simulate`, end to end.
+
+use crate::program::Place;
+use palpate_asserts::assert_has;
+
+const SHAKEN: &str = "--depths-mm 1,2 --from-mm -3 --to-mm 3 --hand 0.05,5,500 --tremor-mm 0.05 --relaxation 0.2,1 \
+    --friction 0.2 --noise-sd-n 0.1 --correlation 0.5 --offset-sd-n 0.1 --drift-sd-n 0.1 --resolution-n 0.01 --depth-noise-mm 0.01";
+
+// Verifies: CLI-230, CLI-231, SIM-003.
+#[test]
+fn a_record_is_the_same_alone_and_among_others_from_a_phantom_and_from_its_map() {
+    let place = Place::new("simulate_command");
+    // A row each 0.5 mm down to 1 mm below the path, a column each 0.5 mm to 1 mm beside it.
+    let map = place
+        .succeed("solve --phantom none --depths-mm 0:3:0.5 --laterals-mm=-4:4:0.5 --format json");
+    place.write("map.json", map);
+    let alone = place.succeed(&format!("simulate --phantom none {SHAKEN}"));
+    assert_eq!(
+        alone,
+        place.succeed(&format!("simulate --map map.json {SHAKEN}"))
+    );
+    assert_eq!(alone.lines().count(), 1 + 2 * 61);
+    place.succeed(&format!(
+        "simulate --map map.json {SHAKEN} --records 3 --out records"
+    ));
+    assert_eq!(alone, place.read("records/record-0001.csv"));
+    let others = [2, 3].map(|number| place.read(&format!("records/record-000{number}.csv")));
+    assert!(others[0] != alone && others[1] != others[0]);
+    let other_seed = place.succeed(&format!("simulate --map map.json {SHAKEN} --seed 2"));
+    assert_ne!(alone, other_seed);
+    let plain =
+        "simulate --map map.json --depths-mm 2 --from-mm 3 --to-mm -3 --speed-mm-s 6 --rate-hz 1";
+    let without = place.succeed(&format!("{plain} --no-depths"));
+    assert_has(
+        &without,
+        "position_mm,lateral_force_n,normal_force_n\n3.000000,",
+    );
+    let lines: Vec<_> = without.lines().collect();
+    assert!(
+        lines[2].starts_with("-3.000000,") && lines.len() == 3,
+        "{without}"
+    );
+
+    for (arguments, expected) in [
+        (
+            "--depths-mm 1 --records 2",
+            "several records need --out DIR",
+        ),
+        (
+            "--depths-mm 1 --out records",
+            "records already exists; choose another --out",
+        ),
+        (
+            "--depths-mm 1 --relaxation 1,2",
+            "--relaxation needs a share below 1 and a time above 0",
+        ),
+        (
+            "--depths-mm 1 --relaxation 0.1,0",
+            "--relaxation needs a share below 1 and a time above 0",
+        ),
+        (
+            "--depths-mm 5",
+            "depth 5.0 mm is outside the map, which has 0.0 to 3.0 mm",
+        ),
+        (
+            "--depths-mm 1 --from-mm -5",
+            "lateral position -5.0 mm is outside the map, which has -4.0 to 4.0 mm",
+        ),
+        (
+            "--depths-mm 1 --from-mm 0 --to-mm 0",
+            "a path has no length, speed, rate or depth",
+        ),
+        ("--depths-mm 3 --hand 0,5,500", "a hand of 0 kg"),
+    ] {
+        let ends = if arguments.contains("-mm -") || arguments.contains("to-mm") {
+            ""
+        } else {
+            "--from-mm -3 --to-mm 3"
+        };
+        assert_has(
+            &place.refused(&format!("simulate --map map.json {arguments} {ends}")),
+            expected,
+        );
+    }
+}
