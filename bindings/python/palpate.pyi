@@ -17,7 +17,7 @@ _Floats = Any
 _Path = str | PathLike[str]
 _Progress = Callable[[int, int], object] | None
 
-# Implements: PYT-046. The keys of answers, so that a type checker knows them; at run time these are plain dictionaries.
+# The keys of answers, so that a type checker knows them; at run time these are plain dictionaries.
 class _Parameters(TypedDict):
     position_mm: float
     depth_mm: float

@@ -1,4 +1,4 @@
-"""Banks and counts of answers. Checks PYT-002, PYT-005, PYT-010, PYT-032."""
+"""Banks and counts of answers. Checks PYT-002, PYT-005, PYT-010, PYT-032, PYT-041."""
 
 import json
 import math
@@ -56,7 +56,7 @@ def test_an_inclusion_is_found_where_it_is(bank):
     assert nothing["inclusion"] is False and nothing["posterior_h1"] < 0.01
 
 
-# Verifies: PYT-041.
+# PYT-041.
 def test_places_have_the_columns_of_the_axes(bank):
     x = np.linspace(-8, 8, 161)
     # A bank of three depths: at this noise the likeliest place is often at the end of an axis.

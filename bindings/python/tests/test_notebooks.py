@@ -28,7 +28,7 @@ def located(bank):
     return bank.locate(X, bank.maps[4].sweep(4, X) + noise)
 
 
-# Verifies: PYT-043.
+# PYT-043.
 def test_objects_are_pickled_and_copied(bank):
     force_map = palpate.ForceMap([1, 2], [0.1, 0.3], [[0.1, 0.2], [0.3, 0.4]], [[1, 2], [3, 4]], note="mine")
     matched = palpate.MatchedFilter([[1, 2], [3, 4]], (0.1, 0.3))
@@ -54,7 +54,7 @@ def test_objects_are_pickled_and_copied(bank):
         pickle.dumps(palpate.ServoState())
 
 
-# Verifies: PYT-044.
+# PYT-044.
 def test_reprs_show_what_differs(bank):
     phantom = palpate.Phantom("6.6", layer_1_youngs_modulus_kpa=10)
     assert eval(repr(phantom), vars(palpate)) == phantom != palpate.Phantom("6.6")
@@ -71,7 +71,7 @@ def test_reprs_show_what_differs(bank):
     assert "<script>" not in tag._repr_html_()
 
 
-# Verifies: PYT-045.
+# PYT-045.
 def test_maps_and_answers_go_to_other_packages(bank, located):
     force_map = bank.maps[4]
     frame = force_map.to_pandas()
@@ -92,7 +92,7 @@ def test_maps_and_answers_go_to_other_packages(bank, located):
         palpate.Bank.plot(located, "colour", lower)
 
 
-# Verifies: PYT-046.
+# PYT-046.
 def test_a_type_checker_knows_the_keys_of_answers(bank, located, tmp_path):
     stub = Path(palpate.__file__).with_name("__init__.pyi").read_text()
     types = {}

@@ -1,4 +1,4 @@
-"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-002, PYT-010."""
+"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-002, PYT-010, PYT-040, PYT-042."""
 
 import _thread
 import json
@@ -187,7 +187,7 @@ def test_forces_between_and_beyond_the_poses(force_map):
             call()
 
 
-# Verifies: PYT-040.
+# PYT-040.
 def test_there_is_no_force_in_air_and_a_line_to_the_first_depth(force_map):
     table = palpate.ServoTable(force_map)
     for depth, share in ((-1, 0), (0, 0), (0.5, 0.5), (1, 1)):
@@ -199,7 +199,7 @@ def test_there_is_no_force_in_air_and_a_line_to_the_first_depth(force_map):
     assert force_map.force(-3, 99) == (0, 0)
 
 
-# Verifies: PYT-042.
+# PYT-042.
 def test_metres_are_doubted(phantom):
     one = [[1.0, 1.0], [1.0, 1.0]]
     for call, name in (
@@ -213,7 +213,7 @@ def test_metres_are_doubted(phantom):
             call()
 
 
-# Verifies: PYT-010.
+# PYT-010.
 @pytest.mark.parametrize(
     "call",
     [
