@@ -4,7 +4,7 @@ Lengths are mm, moduli kPa, forces N; arrays of both forces are lateral first. W
 """
 
 from os import PathLike
-from typing import Any, Callable, Sequence, final
+from typing import Any, Callable, Iterator, Sequence, TypedDict, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,10 +17,125 @@ _Floats = Any
 _Path = str | PathLike[str]
 _Progress = Callable[[int, int], object] | None
 
+# The keys of answers, so that a type checker knows them; at run time these are plain dictionaries.
+class _Parameters(TypedDict):
+    position_mm: float
+    depth_mm: float
+    diameter_mm: float
+    youngs_modulus_kpa: float
+
+class _Axes(TypedDict):
+    position_mm: list[float]
+    depth_mm: list[float]
+    diameter_mm: list[float]
+    youngs_modulus_kpa: list[float]
+
+class _Intervals(TypedDict):
+    # No end where the likelihood still rises at the end of the bank.
+    position_mm: list[float | None]
+    depth_mm: list[float | None]
+    diameter_mm: list[float | None]
+    youngs_modulus_kpa: list[float | None]
+
+# In SI, and only for parameters that the bank varies.
+class _Place(TypedDict, total=False):
+    position: dict[str, Any]
+    inclusion_depth: dict[str, Any]
+    diameter: dict[str, Any]
+    youngs_modulus: dict[str, Any]
+
+class _Located(_Place):
+    inclusion: bool | None
+    decision: str
+    causes: list[str]
+    decided_by: str
+    theta_max: float
+    theta_mixture: float
+    eta: float
+    gamma: float
+    gamma_nominal: float
+    amplitude: float
+    amplitude_sd: float
+    posterior_h1: float | None
+    false_alarm_bound: float
+    miss_bound: float
+    hypotheses: int
+    fits: bool
+    noise_sd_lateral_n: float | None
+    noise_sd_normal_n: float
+    chi_square: float
+    chi_square_limits: list[float] | None
+    degrees: float
+    whiteness: float | None
+    level: float | None
+    samples_in_air: list[list[int]]
+    likeliest: _Parameters
+    estimate: _Parameters
+    mean: _Parameters
+    interval_95: _Intervals
+    places: NDArray[np.float64]
+    probabilities: NDArray[np.float64]
+
+class _Judged(_Place, total=False):
+    inclusion: bool | None
+    model: str
+    decision: str
+    causes: list[str]
+    posterior_h1: float | None
+    theta: float | None
+    false_alarm: float | None
+    miss: float | None
+    class_without: dict[str, Any]
+    class_with: dict[str, Any]
+    remedy: str
+    no_inclusion_down_to_m: float | None
+    hypotheses: int
+    several_inclusions: float
+    level: float | list[float | None] | None
+    noise_sd_lateral_n: float | list[float | None] | None
+    noise_sd_normal_n: float | list[float | None] | None
+    glitches: list[int]
+    samples_in_air: list[list[int]]
+
+class _Nuisances(TypedDict):
+    t: float
+    gamma: float
+    gamma_nominal: float
+    residual: float
+    theta: float
+    false_alarm: float
+    miss: float
+    rank: int
+    degrees: int
+
+class _BankPosterior(TypedDict):
+    theta: list[float]
+    posterior: list[float]
+    theta_mixture: float
+    theta_max: float
+    hypothesis: int
+    posterior_h1: float
+
+class _Scan(TypedDict):
+    theta: NDArray[np.float64]
+    max_theta: Any
+    gamma: Any
+    refined_shift: Any
+    shift: Any
+
+class _Counts(TypedDict):
+    pooled: list[int]
+    rate: list[float]
+    gamma: list[float]
+    chi2: float
+    df: int
+
 class Refused(ValueError): ...
 
 @final
 class ProbeForce:
+    def __new__(cls, lateral_n: float, normal_n: float) -> ProbeForce: ...
+    def __iter__(self) -> Iterator[float]: ...
     @property
     def lateral_n(self) -> float: ...
     @property
@@ -69,6 +184,9 @@ class ForceMap:
     ) -> ForceMap: ...
     @staticmethod
     def read(path: _Path) -> ForceMap: ...
+    @staticmethod
+    def from_json(text: str) -> ForceMap: ...
+    def to_json(self) -> str: ...
     def write(self, path: _Path) -> None: ...
     @property
     def depths_mm(self) -> NDArray[np.float64]: ...
@@ -79,17 +197,25 @@ class ForceMap:
     @property
     def normal_n(self) -> NDArray[np.float64]: ...
     @property
+    def note(self) -> str: ...
+    @property
     def phantom(self) -> Phantom | None: ...
     @property
     def certificate(self) -> dict[str, Any] | None: ...
     def row(self, depth_mm: float) -> NDArray[np.float64]: ...
     def sweep(self, depth_mm: float, laterals_mm: ArrayLike) -> NDArray[np.float64]: ...
     def force(self, depth_mm: ArrayLike, lateral_mm: ArrayLike) -> tuple[_Floats, _Floats]: ...
+    # DataFrame, Dataset and Axes, where their packages are installed.
+    def to_pandas(self) -> Any: ...
+    def to_xarray(self) -> Any: ...
+    def plot(self, ax: Any = None, of: ArrayLike | None = None) -> Any: ...
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
 @final
 class Statistic:
+    def __new__(cls, theta: float, y_n: Sequence[float], gamma: float) -> Statistic: ...
     @property
     def theta(self) -> float: ...
     @property
@@ -119,7 +245,7 @@ def theta_nuisances(
     level: str = "known",
     bias: float = 0.0,
     eta: float = 0.0,
-) -> dict[str, Any]: ...
+) -> _Nuisances: ...
 def bank_posterior(
     residual: ArrayLike,
     templates: ArrayLike,
@@ -127,8 +253,8 @@ def bank_posterior(
     prior: ArrayLike,
     level: str = "known",
     prior_h1: float = 0.5,
-) -> dict[str, Any]: ...
-def scan(residual: ArrayLike, template: ArrayLike, noise_sd_n: ArrayLike) -> dict[str, Any]: ...
+) -> _BankPosterior: ...
+def scan(residual: ArrayLike, template: ArrayLike, noise_sd_n: ArrayLike) -> _Scan: ...
 def simulate_theta(
     f0: ArrayLike, f1: ArrayLike, noise_sd_n: ArrayLike, inclusion: bool, trials: int, seed: int = 1999
 ) -> NDArray[np.float64]: ...
@@ -168,6 +294,11 @@ class Bank:
     ) -> Bank: ...
     @staticmethod
     def read(path: _Path) -> Bank: ...
+    @staticmethod
+    def from_json(text: str) -> Bank: ...
+    def to_json(self) -> str: ...
+    @staticmethod
+    def plot(answer: _Located, parameter: str = "position_mm", ax: Any = None) -> Any: ...
     def write(self, path: _Path) -> None: ...
     @property
     def probe_depth_mm(self) -> float: ...
@@ -176,24 +307,24 @@ class Bank:
     @property
     def maps(self) -> list[ForceMap]: ...
     @property
-    def axes(self) -> dict[str, list[float]]: ...
+    def axes(self) -> _Axes: ...
     def judge(
         self,
         positions_mm: ArrayLike,
         forces_n: ArrayLike,
         noise_sd_n: ArrayLike | None = None,
-        known: Sequence[str] = (),
+        known: str | Sequence[str] = (),
         zeroed: bool = False,
         sure: float = 0.95,
         prior: ArrayLike | None = None,
         prior_h1: float = 0.5,
-    ) -> dict[str, Any]: ...
+    ) -> _Judged: ...
     def locate(
         self,
         positions_mm: ArrayLike,
         forces_n: ArrayLike,
         noise_sd_n: ArrayLike | None = None,
-        unknown: Sequence[str] = ("offset", "drift", "gain", "variance"),
+        unknown: str | Sequence[str] = ("offset", "drift", "gain", "variance"),
         white: bool = False,
         depth_tolerance_mm: float = 0.3,
         max_miss: float | None = None,
@@ -201,7 +332,7 @@ class Bank:
         prior: ArrayLike | None = None,
         prior_h1: float = 0.5,
         zeroed: bool = False,
-    ) -> dict[str, Any]: ...
+    ) -> _Located: ...
 
 @final
 class Watcher:
@@ -209,7 +340,7 @@ class Watcher:
         cls,
         bank: Bank,
         noise_sd_n: ArrayLike,
-        unknown: Sequence[str] = ("offset", "drift", "gain"),
+        unknown: str | Sequence[str] = ("offset", "drift", "gain"),
         max_false_alarm: float = 0.01,
         max_miss: float = 0.05,
         prior: ArrayLike | None = None,
@@ -230,8 +361,8 @@ def calibrate(
     contact_mm: float | None = None,
     mesh_mm: float = 0.5,
 ) -> dict[str, Any]: ...
-def count_analysis(correct: ArrayLike, trials: int) -> dict[str, Any]: ...
-def analyse_answers(path: _Path | None = None) -> dict[str, Any]: ...
+def count_analysis(correct: ArrayLike, trials: int) -> _Counts: ...
+def analyse_answers(table: Any = None) -> dict[str, Any]: ...
 
 @final
 class ServoTable:

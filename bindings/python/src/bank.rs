@@ -8,19 +8,20 @@ use palpate::bank::{self, BankPlan, BankSearch, Location};
 use palpate::detect::Decision;
 use palpate::fem::FemError;
 use palpate::force::Force;
-use palpate::force_map::ForceMap as Map;
+use palpate::force_map::{ForceMap as Map, SAME_POSITION};
 use palpate::refusal::Refusal;
 use palpate::robust::{GelChanges, GelUncertainty, Part, RobustQuestion, RobustSweep};
-use palpate::rows::CREDIBLE;
 use palpate::trace::{Correlation, Criterion, Noise, Question, Record, Unknown};
 use pyo3::prelude::*;
-use pyo3::types::PyList;
+use pyo3::types::{PyDict, PyEllipsis, PyList, PyTuple};
 use rayon::prelude::*;
-use serde::Serialize;
-use serde_json::{Value, json};
 
 use crate::classes::{ForceMap, Phantom};
-use crate::convert::{Any, Records, array, floats, in_unit, list, pair, python, refused, si, tell};
+use crate::convert::{
+    Any, Names, Records, array, doubt_metres, floats, html, in_unit, lengths, list, pair, python,
+    refused, remade, si, tell,
+};
+use crate::map::axes;
 
 /// Names of the parameters of an inclusion, and the power of ten from SI to their units.
 const NAMES: [(&str, i32); 4] = [
@@ -30,16 +31,29 @@ const NAMES: [(&str, i32); 4] = [
     ("youngs_modulus_kpa", -3),
 ];
 
-/// What belongs to each parameter, by name and in its unit.
-fn named<T: Serialize>(of: impl Fn(usize, i32) -> T) -> Value {
-    let named = NAMES.into_iter().enumerate();
-    named
-        .map(|(axis, (name, power))| (name, json!(of(axis, power))))
-        .collect()
+/// What belongs to each parameter, by name and in its unit, in the order of the columns of places.
+///
+/// Implements: PYT-041.
+fn named<'py, T: IntoPyObject<'py>>(
+    py: Python<'py>,
+    of: impl Fn(usize, i32) -> T,
+) -> PyResult<Bound<'py, PyDict>> {
+    let named = PyDict::new(py);
+    for (axis, (name, power)) in NAMES.into_iter().enumerate() {
+        named.set_item(name, of(axis, power))?;
+    }
+    Ok(named)
 }
 
 /// The forces of one gel without an inclusion, and with each of those that may be there: a full grid of positions, depths, diameters
 /// and Young's moduli. Bank(reference, maps) is the bank of force maps.
+///
+/// >>> x = np.linspace(-8, 8, 81)
+/// >>> bank = Bank.build(Phantom("6.6"), 4, [-8, -4, 0, 4, 8], offsets_mm=[-2, 0, 2], mesh_mm=2)
+/// >>> record = bank.maps[2].sweep(4, x) + 0.05 * np.random.default_rng(1).standard_normal((2, 81))
+/// >>> answer = bank.locate(x, record, noise_sd_n=0.05)
+/// >>> answer["inclusion"], answer["likeliest"]["position_mm"]
+/// (True, 2.0)
 #[pyclass(frozen, module = "palpate")]
 pub struct Bank {
     pub(crate) bank: bank::Bank,
@@ -84,10 +98,39 @@ fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
     Ok(maps)
 }
 
-/// The record of forces, or of normal forces alone, at positions.
-fn record(positions_mm: Any, forces_n: Any) -> PyResult<Record> {
+/// The record of forces, or of normal forces alone, at positions over a bank.
+///
+/// Implements: PYT-005.
+fn record(bank: &bank::Bank, positions_mm: Any, forces_n: Any) -> PyResult<Record> {
     let positions = list("positions_mm", positions_mm, -3)?;
+    let laterals = bank.reference().table().laterals();
+    let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
+    let over = first - SAME_POSITION..=last + SAME_POSITION;
+    if let Some(at) = positions.iter().position(|x| !over.contains(x)) {
+        let [found, first, last] = [positions[at], first, last].map(|x| in_unit(x, 3));
+        let right = format!("between {first} and {last}, as in the bank; leave the others out");
+        let beyond = Refusal::value(format!("positions_mm[{at}]"), found, right);
+        return Err(refused(beyond));
+    }
     let values = floats("forces_n", forces_n)?;
+    if let Some(at) = values
+        .as_slice()?
+        .iter()
+        .position(|force| !force.is_finite())
+    {
+        let shape = values.shape();
+        let at = match shape.len() {
+            1 => at.to_string(),
+            _ => format!(
+                "{}, {}",
+                at / shape[shape.len() - 1],
+                at % shape[shape.len() - 1]
+            ),
+        };
+        return Err(refused(format!(
+            "forces_n[{at}] is NaN or infinite; leave such samples out"
+        )));
+    }
     if let [_] = values.shape() {
         let forces = Force::new(&[][..], values.as_slice()?);
         return Record::new("record", &positions, forces).map_err(refused);
@@ -128,22 +171,25 @@ fn criterion(max_miss: Option<f64>, max_false_alarm: Option<f64>) -> PyResult<Cr
 /// The rows of an answer, with parameters of the inclusion in mm and kPa.
 fn told<'py>(py: Python<'py>, bank: &bank::Bank, found: &Location) -> PyResult<Bound<'py, PyAny>> {
     let place = &found.place;
-    let at = |point: [f64; 4]| named(|axis, power| in_unit(point[axis], power));
-    let intervals = [0, 1, 2, 3].map(|axis| place.interval(axis, CREDIBLE));
+    let at = |point: [f64; 4]| named(py, |axis, power| in_unit(point[axis], power));
+    let intervals = [0, 1, 2, 3].map(|axis| found.interval(bank, axis));
+    let intervals = intervals.into_iter().collect::<Result<Vec<_>, _>>();
+    let intervals = intervals.map_err(refused)?;
     let interval = |axis: usize, power| {
-        let ends = intervals[axis].as_ref().ok();
-        ends.map(|ends| [ends.lower, ends.upper].map(|end| in_unit(end, power)))
+        let only = Some(place.estimate[axis]);
+        let ends = intervals[axis].map_or([only; 2], |of| [of.lower, of.upper]);
+        ends.map(|end| end.map(|end| in_unit(end, power)))
     };
     let answer = python(py, &found.rows(bank).map_err(refused)?)?;
     let decided = found.decision.map(|found| found == Decision::Inclusion);
     answer.set_item("inclusion", decided)?;
     for (key, named) in [
-        ("likeliest", at(found.point)),
-        ("estimate", at(place.estimate)),
-        ("mean", at(place.mean())),
-        ("interval_95", named(interval)),
+        ("likeliest", at(found.point)?),
+        ("estimate", at(place.estimate)?),
+        ("mean", at(place.mean())?),
+        ("interval_95", named(py, interval)?),
     ] {
-        answer.set_item(key, python(py, &named)?)?;
+        answer.set_item(key, named)?;
     }
     let nodes: Vec<_> = place.nodes().collect();
     let powers = NAMES.map(|(_, power)| power);
@@ -167,7 +213,7 @@ impl Bank {
     }
 
     /// The bank for the one inclusion of phantom, varied: x of its centre (offsets_mm), depth, diameter, all in mm, and Young's modulus in
-    /// kPa, each an array, or None for that of the phantom. probe_depth_mm and laterals_mm, shape (n,), in mm: the sweep. mesh_mm
+    /// kPa, each a number or an array, or None for that of the phantom. probe_depth_mm and laterals_mm, shape (n,), in mm: the sweep. mesh_mm
     /// and contact as of Phantom.solve; progress as of Phantom.map, with numbers of computations.
     // Implements: PYT-010, PYT-020.
     #[staticmethod]
@@ -187,8 +233,9 @@ impl Bank {
         contact: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bank> {
+        doubt_metres(py, "probe_depth_mm", &[probe_depth_mm])?;
         let depth = si("probe_depth_mm", probe_depth_mm, -3)?;
-        let laterals = list("laterals_mm", laterals_mm, -3)?;
+        let laterals = lengths("laterals_mm", laterals_mm)?;
         let plan = BankPlan::new(phantom.0.clone(), depth, &laterals);
         let mut plan = plan.map_err(refused)?;
         plan.mesh_size = si("mesh_mm", mesh_mm, -3)?;
@@ -214,7 +261,20 @@ impl Bank {
         Ok(Bank::of(bank::Bank::read(&path).map_err(refused)?))
     }
 
-    /// Writes the bank to a file, for palpate detect too.
+    /// The bank of a JSON text, as to_json gives it.
+    #[staticmethod]
+    fn from_json(text: &str) -> PyResult<Bank> {
+        Ok(Bank::of(
+            bank::Bank::from_json(text, "text").map_err(refused)?,
+        ))
+    }
+
+    /// The bank as JSON, the text of a file; lengths are in m, forces in N.
+    fn to_json(&self) -> String {
+        self.bank.to_json()
+    }
+
+    /// Writes the bank to a file, for palpate detect too. A file that is there is overwritten.
     fn write(&self, path: PathBuf) -> PyResult<()> {
         Ok(std::fs::write(path, self.bank.to_json())?)
     }
@@ -239,14 +299,14 @@ impl Bank {
 
     /// The values of position_mm, depth_mm, diameter_mm (mm) and youngs_modulus_kpa (kPa), lists in a dictionary.
     #[getter]
-    fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+    fn axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let values = |axis: usize, power| {
             let values = self.bank.axes()[axis].iter();
             values
                 .map(|&value| in_unit(value, power))
                 .collect::<Vec<_>>()
         };
-        python(py, &named(values))
+        named(py, values)
     }
 
     /// Is an inclusion of the bank in a record, whatever gel, motion and sensor did to it? The answer of palpate detect --bank with the keys
@@ -257,7 +317,7 @@ impl Bank {
     /// stage, surface, tilt, friction, relaxation and walk. zeroed: whether the sensor was set to zero on the gel. sure: the posterior from
     /// which there is an inclusion. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion. The first call
     /// computes the gels beside that of the bank.
-    #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, known=vec![], zeroed=false, sure=0.95, prior=None, prior_h1=0.5),
+    #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, known=Names::of(&[]), zeroed=false, sure=0.95, prior=None, prior_h1=0.5),
         text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, known=(), zeroed=False, sure=0.95, prior=None, prior_h1=0.5)")]
     #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
     fn judge<'py>(
@@ -266,15 +326,15 @@ impl Bank {
         positions_mm: Any<'_, 'py>,
         forces_n: Any<'_, 'py>,
         noise_sd_n: Option<Any<'_, 'py>>,
-        known: Vec<String>,
+        known: Names,
         zeroed: bool,
         sure: f64,
         prior: Option<Any<'_, 'py>>,
         prior_h1: f64,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let record = record(positions_mm, forces_n)?;
+        let record = record(&self.bank, positions_mm, forces_n)?;
         let prior = prior.map(|prior| list("prior", prior, 0)).transpose()?;
-        let known = chosen("known", known, Part::known())?;
+        let known = chosen("known", known.list(), Part::known())?;
         let question = RobustQuestion {
             known: &known,
             is_zeroed: zeroed,
@@ -303,14 +363,13 @@ impl Bank {
     /// As palpate detect --model exact: is one of the bank's inclusions in a record, and where? A dictionary: inclusion (True, False, or None where the record cannot be
     /// judged, for the causes) and the answer of palpate detect with the keys of its JSON, in SI (decision, posterior_h1, theta_max, eta,
     /// gamma ...); likeliest, estimate, mean and interval_95 of each parameter in mm and kPa, if there is an inclusion; places,
-    /// shape (m, 4), in the order of the bank's axes, and their probabilities, shape (m,).
+    /// shape (m, 4), one column for each key of axes in its order, and their probabilities, shape (m,).
     ///
     /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N, or (n,), normal alone. noise_sd_n: of a sample in
     /// N, one for both channels or (lateral, normal), or None if the record tells. unknown: what is fitted, of offset, drift, gain, depth and variance.
     /// white: do not test the record for correlated noise. zeroed: whether the sensor was set to zero on the gel. The decision is for the fewest errors, or keeps
     /// max_miss or max_false_alarm. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion.
-    #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, unknown=vec!["offset".into(), "drift".into(), "gain".into(),
-        "variance".into()], white=false, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=false),
+    #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, unknown=Names::of(&["offset", "drift", "gain", "variance"]), white=false, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=false),
         text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, unknown=('offset', 'drift', 'gain', 'variance'), white=False, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=False)")]
     #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
     fn locate<'py>(
@@ -319,7 +378,7 @@ impl Bank {
         positions_mm: Any<'_, 'py>,
         forces_n: Any<'_, 'py>,
         noise_sd_n: Option<Any<'_, 'py>>,
-        unknown: Vec<String>,
+        unknown: Names,
         white: bool,
         depth_tolerance_mm: f64,
         max_miss: Option<f64>,
@@ -328,7 +387,7 @@ impl Bank {
         prior_h1: f64,
         zeroed: bool,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let record = record(positions_mm, forces_n)?;
+        let record = record(&self.bank, positions_mm, forces_n)?;
         let sd = noise_sd_n.map(|sd| pair("noise_sd_n", sd)).transpose()?;
         let correlation = match white {
             true => Correlation::None,
@@ -340,7 +399,7 @@ impl Bank {
                 depth: self.bank.depth(),
                 depth_tolerance: si("depth_tolerance_mm", depth_tolerance_mm, -3)?,
                 is_zeroed: zeroed,
-                unknown: &chosen("unknown", unknown, Unknown::ALL)?,
+                unknown: &chosen("unknown", unknown.list(), Unknown::ALL)?,
                 noise: Noise { sd, correlation },
                 criterion: criterion(max_miss, max_false_alarm)?,
                 prior_h1,
@@ -353,8 +412,72 @@ impl Bank {
         told(py, &self.bank, &found.map_err(refused)?)
     }
 
+    /// Draws the posterior density of one parameter, given an inclusion, of an answer of locate, and returns the axes: ax, or Matplotlib's current
+    /// ones. parameter: a key of axes, with its unit, mm or kPa. Needs Matplotlib.
+    // Implements: PYT-045.
+    #[staticmethod]
+    #[pyo3(signature = (answer, parameter="position_mm", ax=None))]
+    fn plot<'py>(
+        py: Python<'py>,
+        answer: Any<'_, 'py>,
+        parameter: &str,
+        ax: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let column = NAMES.iter().position(|(name, _)| *name == parameter);
+        let known = NAMES.map(|(name, _)| name).join(", ");
+        let wrong = || {
+            refused(Refusal::value(
+                "parameter",
+                parameter,
+                format!("one of {known}"),
+            ))
+        };
+        let column = column.ok_or_else(wrong)?;
+        let places = answer
+            .get_item("places")?
+            .get_item((PyEllipsis::get(py), column))?;
+        let options = PyDict::new(py);
+        options.set_item("weights", answer.get_item("probabilities")?)?;
+        options.set_item("bins", 40)?;
+        options.set_item("density", true)?;
+        let ax = axes(py, ax)?;
+        ax.call_method("hist", (places,), Some(&options))?;
+        ax.call_method1(
+            "set_xlabel",
+            (parameter
+                .replacen("_mm", ", mm", 1)
+                .replace("_kpa", ", kPa")
+                .replace('_', " "),),
+        )?;
+        ax.call_method1("set_ylabel", ("probability density",))?;
+        Ok(ax)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        remade(slf, "from_json", slf.get().bank.to_json())
+    }
+
+    // Implements: PYT-044.
+    fn _repr_html_(&self) -> String {
+        let row = |(axis, (name, power)): (usize, (&str, i32))| {
+            let values = self.bank.axes()[axis].iter();
+            let values: Vec<_> = values.map(|&x| in_unit(x, power).to_string()).collect();
+            vec![name.into(), values.join(", ")]
+        };
+        let rows: Vec<_> = NAMES.into_iter().enumerate().map(row).collect();
+        html(&self.__repr__(), &[], &rows)
+    }
+
     fn __repr__(&self) -> String {
         let (maps, depth) = (self.bank.maps().len(), self.probe_depth_mm());
-        format!("<Bank of {maps} inclusions, probe at {depth} mm>")
+        let varied = (0..4).filter(|&axis| self.bank.axes()[axis].len() > 1);
+        let range = |axis: usize| {
+            let (name, power) = NAMES[axis];
+            let values = &self.bank.axes()[axis];
+            let [from, to] = [values[0], values[values.len() - 1]].map(|x| in_unit(x, power));
+            format!(", {name} {from} to {to} ({})", values.len())
+        };
+        let varied: String = varied.map(range).collect();
+        format!("<Bank of {maps} inclusions{varied}, probe at {depth} mm>")
     }
 }

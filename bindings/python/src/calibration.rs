@@ -4,7 +4,7 @@ use palpate::calibration::{self, CalibrationQuestion, Curve, Indentation};
 use pyo3::prelude::*;
 
 use crate::classes::Phantom;
-use crate::convert::{Any, list, python, refused, si};
+use crate::convert::{Any, interruptible, list, python, refused, si};
 
 /// What a force-depth curve says of a gel: the answer of palpate calibrate for one curve, with the keys of its JSON, in SI, in a
 /// dictionary; and phantom, the Phantom with the moduli that were found, or None.
@@ -34,26 +34,28 @@ pub fn calibrate<'py>(
     );
     let times = times_s.map(|times| list("times_s", times, 0)).transpose()?;
     let curve = Curve::new("curve", times.as_deref(), &depths, &forces).map_err(refused)?;
-    let indentation = Indentation {
-        layers: &layers,
-        lateral: si("lateral_mm", lateral_mm, -3)?,
-        mesh_size: si("mesh_mm", mesh_mm, -3)?,
-    };
+    let lateral = si("lateral_mm", lateral_mm, -3)?;
+    let mesh_size = si("mesh_mm", mesh_mm, -3)?;
     let contact = contact_mm
         .map(|contact| si("contact_mm", contact, -3))
         .transpose()?;
-    let question = CalibrationQuestion {
-        gel: phantom.map(|phantom| (&phantom.0, indentation)),
-        contact,
-    };
-    let found = py
-        .detach(|| calibration::calibrate(&curve, question))
-        .map_err(refused)?;
-    let told = python(py, &found.rows(&layers).map_err(refused)?)?;
-    let moduli = found.moduli(&layers).map_err(refused)?;
-    let own = phantom.filter(|_| !moduli.is_empty());
-    let calibrated = own.map(|own| calibration::calibrated(&own.0, &layers, &moduli));
-    let calibrated = calibrated.transpose().map_err(refused)?;
+    let own = phantom.map(|phantom| phantom.0.clone());
+    let (rows, calibrated) = interruptible(py, move || {
+        let indentation = Indentation {
+            layers: &layers,
+            lateral,
+            mesh_size,
+        };
+        let gel = own.as_ref().map(|own| (own, indentation));
+        let question = CalibrationQuestion { gel, contact };
+        let found = calibration::calibrate(&curve, question).map_err(refused)?;
+        let moduli = found.moduli(&layers).map_err(refused)?;
+        let own = own.as_ref().filter(|_| !moduli.is_empty());
+        let calibrated = own.map(|own| calibration::calibrated(own, &layers, &moduli));
+        let calibrated = calibrated.transpose().map_err(refused)?;
+        Ok((found.rows(&layers).map_err(refused)?, calibrated))
+    })?;
+    let told = python(py, &rows)?;
     told.set_item("phantom", calibrated.map(Phantom))?;
     Ok(told)
 }

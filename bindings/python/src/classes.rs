@@ -8,6 +8,11 @@ use pyo3::prelude::*;
 ///
 /// Keywords change numbers of it, by the names of the phantom file (mm, kPa) behind that of their table: well_width_mm=40,
 /// inclusion_depth_mm=5, layer_1_youngs_modulus_kpa=8, where layers and inclusions count from 0 and the only one needs no number.
+///
+/// >>> soft = Phantom("6.6", layer_1_youngs_modulus_kpa=4)
+/// >>> lateral, normal = soft.solve(depth_mm=4, lateral_mm=0, mesh_mm=1)
+/// >>> round(normal, 1)
+/// 1.5
 // Implements: PYT-007.
 #[pyclass(frozen, eq, module = "palpate")]
 #[derive(PartialEq)]
@@ -16,6 +21,12 @@ pub struct Phantom(pub phantom::Phantom);
 /// The force on the probe over a grid of m depths and n lateral positions, N. ForceMap(depths_mm, laterals_mm, lateral_n, normal_n) is a
 /// map of measured forces: depths_mm of shape (m,) and laterals_mm of shape (n,) increase, in mm; lateral_n and normal_n have the
 /// shape (m, n), in N; lateral_n is None where it was not measured. phantom: what was measured, if that is known.
+///
+/// >>> measured = ForceMap([1, 2], [-5, 0, 5], None, [[0.4, 0.5, 0.4], [0.9, 1.2, 0.9]], note="gel of 24 November")
+/// >>> measured.sweep(1.5, [0, 2.5])
+/// array([0.85, 0.75])
+/// >>> measured.to_pandas().shape
+/// (6, 3)
 // Implements: PYT-002.
 #[pyclass(frozen, eq, module = "palpate")]
 #[derive(PartialEq)]

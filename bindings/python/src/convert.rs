@@ -1,6 +1,10 @@
 //! From Python to Rust and back: errors, units, arrays, tables.
 
+use std::ffi::CString;
 use std::fmt::Display;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread::Builder;
+use std::time::Duration;
 
 use numpy::ndarray::{ArrayD, IxDyn};
 use numpy::{IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
@@ -8,9 +12,10 @@ use palpate::decimal::{format_scaled, parse_scaled};
 use palpate::force::Force;
 use palpate::refusal::{Refusal, one_line};
 use palpate::stats::NumericError;
-use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::PyClass;
+use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{PyCFunction, PyDict, PyList, PyTuple};
 use serde::Serialize;
 
 pyo3::create_exception!(
@@ -19,6 +24,13 @@ pyo3::create_exception!(
     PyValueError,
     "An input that is not what it must be, or a computation that has no answer: one line that says what is wrong and what would be right."
 );
+
+/// Lengths below this, mm, are probably metres: a gel has some 15 mm.
+const PROBABLY_METRES: f64 = 0.05;
+/// How often a long call looks for Ctrl-C.
+const PERIOD: Duration = Duration::from_millis(50);
+/// The stack of a long call, bytes, as of a main thread.
+const STACK: usize = 8 << 20;
 
 /// Whatever Python hands over.
 pub type Any<'a, 'py> = &'a Bound<'py, PyAny>;
@@ -50,9 +62,50 @@ pub fn in_unit(value: f64, power: i32) -> f64 {
     format_scaled(value, power).parse().unwrap_or(f64::NAN)
 }
 
-/// A list of numbers in a unit, in SI.
+/// Warns where all lengths, which are mm, are so small that they are probably metres.
+///
+/// Implements: PYT-042.
+pub fn doubt_metres(py: Python<'_>, name: &str, mm: &[f64]) -> PyResult<()> {
+    let largest = mm.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    if !(f64::MIN_POSITIVE..PROBABLY_METRES).contains(&largest) {
+        return Ok(());
+    }
+    let message = format!("{name} is at most {largest} mm; if these are metres, multiply by 1000");
+    PyErr::warn(
+        py,
+        &py.get_type::<PyUserWarning>(),
+        &CString::new(message)?,
+        1,
+    )
+}
+
+/// Lengths in mm, in m.
+pub fn lengths(name: &str, mm: &Bound<PyAny>) -> PyResult<Vec<f64>> {
+    doubt_metres(mm.py(), name, floats(name, mm)?.as_slice()?)?;
+    list(name, mm, -3)
+}
+
+/// The lengths of an axis in mm, which increases, in m.
+pub fn axis(name: &str, mm: &Bound<PyAny>) -> PyResult<Vec<f64>> {
+    let axis = lengths(name, mm)?;
+    if let Some(at) = axis.windows(2).position(|pair| pair[1] <= pair[0]) {
+        let [before, found] = [axis[at], axis[at + 1]].map(|x| in_unit(x, 3));
+        let right = format!("more than {before}, the one before it");
+        return Err(refused(Refusal::value(
+            format!("{name}[{}]", at + 1),
+            found,
+            right,
+        )));
+    }
+    Ok(axis)
+}
+
+/// A list of numbers in a unit, or one number, in SI.
 pub fn list(name: &str, values: &Bound<PyAny>, power: i32) -> PyResult<Vec<f64>> {
-    let values = vector(name, values)?;
+    let values = floats(name, values)?;
+    if !matches!(values.shape(), [] | [_]) {
+        return Err(wrong_shape(name, values.shape(), "[n]"));
+    }
     let named = |(index, &value): (usize, &f64)| si(&format!("{name}[{index}]"), value, power);
     values.as_slice()?.iter().enumerate().map(named).collect()
 }
@@ -157,15 +210,17 @@ impl<'py> Records<'py> {
 
     /// The one record in `values`.
     pub fn one(name: &str, values: &Bound<'py, PyAny>) -> PyResult<Records<'py>> {
-        let records = Records::new(name, values)?;
-        if let Some(count) = records.count {
-            let found = format!("{name} has {count} records");
-            return Err(refused(Refusal::state(
-                found,
-                "give one, of the shape [2, n]",
-            )));
-        }
-        Ok(records)
+        let records = Records::new(name, values);
+        records
+            .ok()
+            .filter(|records| records.count.is_none())
+            .ok_or_else(|| {
+                let right = "[2, n], the lateral and the normal samples of one record";
+                match floats(name, values) {
+                    Ok(values) => wrong_shape(name, values.shape(), right),
+                    Err(error) => error,
+                }
+            })
     }
 
     /// All samples, record by record, lateral ones first.
@@ -194,8 +249,12 @@ pub fn halves(record: &[f64]) -> Force<&[f64]> {
     Force::new(lateral, normal)
 }
 
-/// The exception for what is refused of the record with a number, if it is one of several.
+/// The exception for what is refused of the record with a number, if it is one of several. The crate's observed_y[7] is observed[1, 7] here.
+///
+/// Implements: PYT-005.
 pub fn of_record(number: Option<usize>, error: NumericError) -> PyErr {
+    let error = error.to_string();
+    let error = error.replace("_x[", "[0, ").replace("_y[", "[1, ");
     match number {
         None => refused(error),
         Some(number) => refused(format!("record {number}: {error}")),
@@ -205,6 +264,12 @@ pub fn of_record(number: Option<usize>, error: NumericError) -> PyErr {
 /// A standard deviation for both channels, or (lateral, normal), N.
 pub fn pair(name: &str, values: &Bound<PyAny>) -> PyResult<Force<f64>> {
     let values = floats(name, values)?;
+    for sd in values.as_slice()? {
+        let wrong = Refusal::value(name, sd, "finite and greater than 0");
+        wrong
+            .when(!(sd.is_finite() && *sd > 0.0))
+            .map_err(refused)?;
+    }
     match *values.as_slice()? {
         [both] => Ok(Force::new(both, both)),
         [lateral, normal] => Ok(Force::new(lateral, normal)),
@@ -258,9 +323,12 @@ pub fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'p
 /// Implements: PYT-005.
 pub fn json(value: &Bound<PyAny>) -> PyResult<String> {
     let py = value.py();
-    let arrays = py
-        .import("operator")?
-        .call_method1("methodcaller", ("tolist",))?;
+    // Arrays, series and frames.
+    let arrays = PyCFunction::new_closure(py, None, None, |arguments, _| {
+        let numpy = arguments.py().import("numpy")?;
+        let array = numpy.call_method1("asarray", arguments)?;
+        array.call_method0("tolist").map(Bound::unbind)
+    })?;
     let options = PyDict::new(py);
     options.set_item("allow_nan", false)?;
     options.set_item("default", arrays)?;
@@ -284,4 +352,86 @@ pub fn tell(progress: Option<&Py<PyAny>>, done: usize, all: usize) -> PyResult<(
             None => Ok(()),
         }
     })
+}
+
+/// What long `work` gives, which Ctrl-C ends for who waits; the work itself then goes on to its end, and nobody hears of it.
+///
+/// Implements: PYT-010.
+pub fn interruptible<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> PyResult<T> + Send + 'static,
+) -> PyResult<T> {
+    let (send, mut done) = channel();
+    // Nobody hears of it: that is no error.
+    let work = move || send.send(work()).unwrap_or_default();
+    let thread = Builder::new().stack_size(STACK).spawn(work)?;
+    loop {
+        let heard;
+        (done, heard) = py.detach(move || {
+            let heard = done.recv_timeout(PERIOD);
+            (done, heard)
+        });
+        match heard {
+            Ok(found) => return found,
+            Err(RecvTimeoutError::Timeout) => py.check_signals()?,
+            Err(RecvTimeoutError::Disconnected) => match thread.join() {
+                Err(panic) => std::panic::resume_unwind(panic),
+                Ok(()) => return Err(refused("the computation ended without an answer")),
+            },
+        }
+    }
+}
+
+/// How pickle and copy make an object again: by the function `maker` of its class from a text.
+///
+/// Implements: PYT-043.
+pub fn remade<'py, T: PyClass>(
+    object: &Bound<'py, T>,
+    maker: &str,
+    text: String,
+) -> PyResult<Bound<'py, PyTuple>> {
+    let py = object.py();
+    let call = py
+        .import("operator")?
+        .call_method1("methodcaller", (maker, text))?;
+    (call, (object.as_any().get_type(),)).into_pyobject(py)
+}
+
+/// One name, or several.
+#[derive(FromPyObject)]
+pub enum Names {
+    One(String),
+    Many(Vec<String>),
+}
+
+impl Names {
+    pub fn of(names: &[&str]) -> Names {
+        Names::Many(names.iter().map(|&name| name.into()).collect())
+    }
+
+    pub fn list(self) -> Vec<String> {
+        match self {
+            Names::One(name) => vec![name],
+            Names::Many(names) => names,
+        }
+    }
+}
+
+/// A table for notebooks: a caption, the heads of the columns, and rows.
+///
+/// Implements: PYT-044.
+pub fn html(caption: &str, heads: &[String], rows: &[Vec<String>]) -> String {
+    let cells = |tag: &str, cells: &[String]| {
+        let cells = cells
+            .iter()
+            .map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell)));
+        format!("<tr>{}</tr>", cells.collect::<String>())
+    };
+    let rows = rows.iter().map(|row| cells("td", row)).collect::<String>();
+    let (caption, heads) = (escaped(caption), cells("th", heads));
+    format!("<table><caption>{caption}</caption>{heads}{rows}</table>")
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;")
 }

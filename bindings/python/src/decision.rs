@@ -36,11 +36,15 @@ functions! {
     /// arrays.
     neyman_pearson_false_alarm_threshold(gamma, max_false_alarm) =
         detect::neyman_pearson_false_alarm_threshold(gamma, max_false_alarm);
-    /// The rate of misses at a rate of false alarms: the receiver operating characteristic. Numbers or arrays.
+    /// The rate of misses, P(miss) = 1 - P(hit), at a rate of false alarms: the receiver operating characteristic of gamma, which is d'.
+    /// Numbers or arrays.
+    ///
+    /// >>> round(1 - roc_miss(gamma=2, false_alarm=0.05), 3)  # P(hit)
+    /// 0.639
     roc_miss(gamma, false_alarm) = detect::roc_miss(gamma, false_alarm);
-    /// The area under the curve of hits against false alarms, for numbers or arrays gamma.
+    /// The area under the curve of hits against false alarms, for numbers or arrays gamma, which is d' of signal detection theory.
     auc(gamma) = detect::two_afc(gamma);
-    /// The share of right answers in a two-alternative forced choice, for numbers or arrays gamma.
+    /// The share of right answers in a two-alternative forced choice, for numbers or arrays gamma (d').
     two_afc(gamma) = detect::two_afc(gamma);
     /// The gamma with which a share p_correct of forced choices is right; negative below one half. Numbers or arrays.
     gamma_from_two_afc(p_correct) = detect::gamma_from_two_afc(p_correct);

@@ -9,15 +9,18 @@ use palpate::detect::{self, DetectError, theta_of_record};
 use palpate::force::Force;
 use palpate::stats::random::Generator;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyType};
 use rayon::prelude::*;
 
 use crate::batch;
 use crate::convert::{
-    Any, Records, array, floats, halves, json, of_record, pair, python, refused, vector,
-    wrong_shape,
+    Any, Records, array, floats, halves, interruptible, json, of_record, pair, python, refused,
+    tell, vector, wrong_shape,
 };
 use crate::oracle::asked;
+
+/// Samples that are simulated between two looks for Ctrl-C, some 0.1 s of work.
+const FEW: usize = 1 << 23;
 
 /// The generator of a seed; records with and without an inclusion have streams of their own.
 pub fn generator(seed: u64, inclusion: bool) -> Generator {
@@ -51,6 +54,9 @@ fn same_length(records: &Records, samples: usize) -> PyResult<()> {
 /// without and with the inclusion, in N, of shape (2, n). noise_sd_n: the standard deviation of a sample in N, one for both channels
 /// or (lateral, normal). A float, or an array of shape (k,). A C-ordered array of 64-bit floats is read where it is; do not change
 /// it in another thread meanwhile.
+///
+/// >>> theta([[0, 0], [1.5, 1.75]], f0=[[0, 0], [1.5, 1.5]], f1=[[0, 0], [1.5, 2]], noise_sd_n=0.25)
+/// 0.0
 // Implements: PYT-020.
 #[pyfunction]
 pub fn theta<'py>(
@@ -75,7 +81,7 @@ pub fn theta<'py>(
     observed.answer(py, &[], found)
 }
 
-/// What the matched filter says of one record.
+/// What the matched filter says of one record: theta, y_n (lateral, normal) in N, gamma.
 #[pyclass(frozen, get_all, module = "palpate")]
 pub struct Statistic {
     /// The log-likelihood ratio.
@@ -98,6 +104,16 @@ impl From<detect::Statistic> for Statistic {
 
 #[pymethods]
 impl Statistic {
+    #[new]
+    fn new(theta: f64, y_n: [f64; 2], gamma: f64) -> Statistic {
+        Statistic { theta, y_n, gamma }
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (f64, [f64; 2], f64)) {
+        let of = slf.get();
+        (slf.get_type(), (of.theta, of.y_n, of.gamma))
+    }
+
     fn __repr__(&self) -> String {
         let Statistic { theta, y_n, gamma } = self;
         format!("Statistic(theta={theta:?}, y_n={y_n:?}, gamma={gamma:?})")
@@ -115,7 +131,7 @@ pub fn statistic(
     let (observed, f0) = (Records::one("observed", observed)?, Records::one("f0", f0)?);
     let (f1, noise_sd) = (Records::one("f1", f1)?, pair("noise_sd_n", noise_sd_n)?);
     let found = theta_of_record(observed.force()?, f0.force()?, f1.force()?, noise_sd);
-    Ok(found.map_err(refused)?.into())
+    Ok(found.map_err(|error| of_record(None, error))?.into())
 }
 
 /// The matched filter of a template F_1 - F_0 of shape (2, n), lateral and normal samples in N, in white noise of standard
@@ -128,7 +144,8 @@ pub struct MatchedFilter {
 
 impl MatchedFilter {
     fn filter(&self) -> PyResult<detect::MatchedFilter<'_>> {
-        detect::MatchedFilter::new(halves(&self.template), self.noise_sd).map_err(refused)
+        let filter = detect::MatchedFilter::new(halves(&self.template), self.noise_sd);
+        filter.map_err(|error| of_record(None, error))
     }
 }
 
@@ -165,7 +182,22 @@ impl MatchedFilter {
     fn statistic(&self, residual: Any<'_, '_>) -> PyResult<Statistic> {
         let residual = Records::one("residual", residual)?;
         let found = self.filter()?.statistic(residual.force()?);
-        Ok(found.map_err(refused)?.into())
+        Ok(found.map_err(|error| of_record(None, error))?.into())
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyType>, (Bound<'py, PyAny>, [f64; 2]))> {
+        let MatchedFilter { template, noise_sd } = slf.get();
+        let template = array(slf.py(), &[2, template.len() / 2], template.clone())?;
+        Ok((slf.get_type(), (template, noise_sd.into_array())))
+    }
+
+    fn __repr__(&self) -> PyResult<String> {
+        let (samples, gamma) = (self.template.len() / 2, self.gamma()?);
+        Ok(format!(
+            "<MatchedFilter of 2 x {samples} samples, gamma {gamma:.3}>"
+        ))
     }
 
     /// theta of residuals F_p - F_0 in N of shape (2, n) or (k, 2, n): a float, or an array of shape (k,).
@@ -200,12 +232,14 @@ pub fn theta_coloured(
         let expected = format!("[{order}, {order}]");
         return Err(wrong_shape("covariance", covariance.shape(), &expected));
     }
-    let (residual, template) = (residual.values()?, template.values()?);
-    let covariance = covariance.as_slice()?;
+    let residual = residual.values()?.to_vec();
+    let (template, covariance) = (template.values()?.to_vec(), covariance.as_slice()?.to_vec());
     let mut scratch = zeros(coloured_scratch(order))?;
-    let found = py.detach(|| coloured(residual, template, covariance, &mut scratch));
-    let found = found.map_err(refused)?;
-    Ok((found.theta, found.gamma))
+    interruptible(py, move || {
+        let found = coloured(&residual, &template, &covariance, &mut scratch);
+        let found = found.map_err(refused)?;
+        Ok((found.theta, found.gamma))
+    })
 }
 
 /// What a record says beside signals of unknown amplitude, as a dictionary: t, gamma, gamma_nominal, residual, theta, false_alarm,
@@ -338,7 +372,7 @@ pub fn scan<'py>(
 /// theta of simulated records: F_0 or F_1 and white noise, judged by the matched filter of F_1 - F_0.
 ///
 /// f0 and f1: forces in N, of shape (2, n); noise_sd_n: in N, one for both channels or (lateral, normal). An array of shape (trials,),
-/// the same for the same seed, whatever the number of threads.
+/// the same for the same seed, whatever the number of threads. A seed of a NumPy generator: seed=rng.integers(2**63).
 // Implements: PYT-020.
 #[pyfunction]
 #[pyo3(signature = (f0, f1, noise_sd_n, inclusion, trials, seed=1999))]
@@ -364,10 +398,16 @@ pub fn simulate_theta<'py>(
         *theta = simulation.trial(trial as u64, force, residual)?.theta;
         Ok(())
     };
-    let done: Result<(), DetectError> = py.detach(|| {
-        let places = theta.par_iter_mut().enumerate();
-        places.try_for_each_init(|| vec![0.0; length], trial)
-    });
-    done.map_err(refused)?;
+    // A few at a time, so that this thread hears of Ctrl-C.
+    let few = (FEW / length.max(1)).max(1);
+    for (number, theta) in theta.chunks_mut(few).enumerate() {
+        let done: Result<(), DetectError> = py.detach(|| {
+            let places = theta.par_iter_mut().enumerate();
+            let places = places.map(|(at, theta)| (number * few + at, theta));
+            places.try_for_each_init(|| vec![0.0; length], trial)
+        });
+        done.map_err(|error| of_record(None, error))?;
+        tell(None, trials, trials)?;
+    }
     array(py, &[trials], theta)
 }

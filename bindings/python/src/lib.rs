@@ -13,7 +13,7 @@
 //! | `servo.rs` | the servo kernel |
 //! | `oracle.rs` | every operation of the oracle by name |
 //!
-//! Implements: PYT-002, PYT-009.
+//! Implements: PYT-002, PYT-009, PYT-046.
 
 mod bank;
 mod batch;

@@ -6,12 +6,15 @@ use std::path::PathBuf;
 use palpate::fem::{Contact, FemError, Model, Pose};
 use palpate::phantom;
 use palpate::refusal::Refusal;
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple, PyType};
 use toml::Table;
 
 use crate::classes::{ForceMap, Phantom};
-use crate::convert::{in_unit, json, list, python, refused, si, tell};
+use crate::convert::{
+    axis, doubt_metres, html, in_unit, interruptible, json, python, refused, remade, si, tell,
+};
 
 /// The contact law of a name.
 pub fn contact(name: &str) -> PyResult<Contact> {
@@ -21,7 +24,7 @@ pub fn contact(name: &str) -> PyResult<Contact> {
     found.ok_or_else(|| refused(Refusal::value("contact", format!("{name:?}"), expected)))
 }
 
-/// A force on the probe, N.
+/// A force on the probe, N: lateral, normal = force.
 #[pyclass(frozen, get_all, module = "palpate")]
 pub struct ProbeForce {
     /// Along +x, N.
@@ -32,6 +35,24 @@ pub struct ProbeForce {
 
 #[pymethods]
 impl ProbeForce {
+    #[new]
+    fn new(lateral_n: f64, normal_n: f64) -> ProbeForce {
+        ProbeForce {
+            lateral_n,
+            normal_n,
+        }
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let both = (self.lateral_n, self.normal_n).into_pyobject(py)?;
+        both.call_method0("__iter__")
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (f64, f64)) {
+        let of = slf.get();
+        (slf.get_type(), (of.lateral_n, of.normal_n))
+    }
+
     fn __repr__(&self) -> String {
         let ProbeForce {
             lateral_n,
@@ -69,21 +90,28 @@ fn key(phantom: &phantom::Phantom, keyword: &str) -> PyResult<String> {
         Some((at, key)) if at < many => Ok(format!("{table}[{at}].{key}")),
         _ => {
             let found = format!("{keyword}: the phantom has {many} of these");
-            let expected = format!("say which, from 0, as in {table}_0_{key}");
+            // Without what stands where the number should: layer_gel_thickness_mm.
+            let rest = numbered.map_or(key, |(_, rest)| rest);
+            let known = ["thickness_mm", "diameter_mm", "depth_mm", "centre_x_mm"];
+            let known = known
+                .into_iter()
+                .chain(["youngs_modulus_kpa", "poisson_ratio"]);
+            let key = known.into_iter().find(|known| rest.ends_with(known));
+            let expected = format!("say which, from 0, as in {table}_0_{}", key.unwrap_or(rest));
             Err(refused(Refusal::state(found, expected)))
         }
     }
 }
 
+/// A phantom, meshed and factorised; lengths in mm.
+fn model(phantom: &phantom::Phantom, mesh_mm: f64, contact_name: &str) -> PyResult<Model> {
+    let (size, contact) = (si("mesh_mm", mesh_mm, -3)?, contact(contact_name)?);
+    Model::new(phantom, size, contact).map_err(refused)
+}
+
 impl Phantom {
     fn tables(&self) -> PyResult<Table> {
         self.0.to_toml().parse().map_err(refused)
-    }
-
-    /// Meshed and factorised; lengths in mm.
-    fn model(&self, mesh_mm: f64, contact_name: &str) -> PyResult<Model> {
-        let (size, contact) = (si("mesh_mm", mesh_mm, -3)?, contact(contact_name)?);
-        Model::new(&self.0, size, contact).map_err(refused)
     }
 }
 
@@ -91,8 +119,12 @@ impl Phantom {
 impl Phantom {
     #[new]
     #[pyo3(signature = (name, /, **edits))]
-    fn new(name: &str, edits: Option<&Bound<PyDict>>) -> PyResult<Phantom> {
-        Phantom(phantom::Phantom::builtin(name).map_err(refused)?).edited(edits)
+    fn new(name: &Bound<PyAny>, edits: Option<&Bound<PyDict>>) -> PyResult<Phantom> {
+        let Ok(text) = name.extract::<String>() else {
+            let message = format!("name is {name}, but must be a text, such as \"6.6\"");
+            return Err(PyTypeError::new_err(message));
+        };
+        Phantom(phantom::Phantom::builtin(&text).map_err(refused)?).edited(edits)
     }
 
     /// The phantom in the TOML text or file (a str with a line break is a text, else a path), in mm and kPa.
@@ -166,12 +198,14 @@ impl Phantom {
         mesh_mm: f64,
         contact: &str,
     ) -> PyResult<ProbeForce> {
+        doubt_metres(py, "depth_mm", &[depth_mm])?;
         let depth = si("depth_mm", depth_mm, -3)?;
         let lateral = si("lateral_mm", lateral_mm, -3)?;
         // Before the model is made: a pose that cannot be is cheap to refuse.
         self.0.check_pose(depth, lateral).map_err(refused)?;
-        py.detach(|| {
-            let model = self.model(mesh_mm, contact)?;
+        let (phantom, contact) = (self.0.clone(), contact.to_owned());
+        interruptible(py, move || {
+            let model = model(&phantom, mesh_mm, &contact)?;
             let solution = model.solve(Pose { depth, lateral });
             let force = solution.map_err(refused)?.force;
             Ok(ProbeForce {
@@ -197,10 +231,10 @@ impl Phantom {
         contact: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<ForceMap> {
-        let depths = list("depths_mm", depths_mm, -3)?;
-        let laterals = list("laterals_mm", laterals_mm, -3)?;
+        let depths = axis("depths_mm", depths_mm)?;
+        let laterals = axis("laterals_mm", laterals_mm)?;
         py.detach(|| {
-            let model = self.model(mesh_mm, contact)?;
+            let model = model(&self.0, mesh_mm, contact)?;
             let all = depths.len() * model.solved_laterals(&laterals).len();
             // Poses that are solved, and what was raised.
             let state = RefCell::new((0, None));
@@ -218,8 +252,37 @@ impl Phantom {
         })
     }
 
-    fn __repr__(&self) -> String {
-        let inclusions = self.0.inclusions().len();
-        format!("<Phantom {:?}, {inclusions} inclusions>", self.0.name())
+    /// All of it: two phantoms of one name may differ.
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!("Phantom.from_dict({})", self.to_dict(py)?.repr()?))
+    }
+
+    // Implements: PYT-044.
+    fn _repr_html_(&self) -> PyResult<String> {
+        let mut rows = Vec::new();
+        for (table, value) in self.tables()? {
+            let one = [value.clone()];
+            let of_table = value.as_array().map_or(&one[..], |all| all);
+            for (number, value) in of_table.iter().enumerate() {
+                let key = if of_table.len() > 1 {
+                    format!("{table} {number}")
+                } else {
+                    table.clone()
+                };
+                let text = value.as_table().map_or_else(
+                    || value.to_string(),
+                    |keys| {
+                        let keys = keys.iter().map(|(key, value)| format!("{key} {value}"));
+                        keys.collect::<Vec<_>>().join(", ")
+                    },
+                );
+                rows.push(vec![key, text]);
+            }
+        }
+        Ok(html(&format!("Phantom {}", self.0.name()), &[], &rows))
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        remade(slf, "from_toml", slf.get().to_toml())
     }
 }

@@ -2,9 +2,10 @@
 
 use palpate::servo::{self, Fault, Input, LoadedTable, Mode, Request};
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 
 use crate::classes::ForceMap;
-use crate::convert::{refused, si};
+use crate::convert::{in_unit, refused, si};
 
 /// A finite number of the kernel's, from mm or as it is.
 fn single(name: &str, value: f64, power: i32) -> PyResult<f32> {
@@ -15,33 +16,50 @@ fn single(name: &str, value: f64, power: i32) -> PyResult<f32> {
 
 /// The table that the servo kernel plays: the forces of a force map (N over m) in single precision, with the surface in front.
 #[pyclass(frozen, module = "palpate")]
-pub struct ServoTable(LoadedTable);
+pub struct ServoTable {
+    table: LoadedTable,
+    map: Py<ForceMap>,
+}
 
 #[pymethods]
 impl ServoTable {
     #[new]
-    fn new(map: &ForceMap) -> PyResult<ServoTable> {
-        let table = LoadedTable::new(map.0.table());
-        Ok(ServoTable(table.map_err(refused)?))
+    fn new(map: Py<ForceMap>) -> PyResult<ServoTable> {
+        let table = LoadedTable::new(map.get().0.table()).map_err(refused)?;
+        Ok(ServoTable { table, map })
     }
 
-    /// The force (lateral, normal) in N at a pose in mm, as the kernel computes it in single precision.
+    /// The force (lateral, normal) in N at a pose in mm, that of ForceMap.force as the kernel computes it in single precision. What the kernel plays
+    /// beyond the map, step says.
+    // Implements: PYT-040.
     fn force(&self, depth_mm: f64, lateral_mm: f64) -> PyResult<(f32, f32)> {
         let depth = single("depth_mm", depth_mm, -3)?;
         let lateral = single("lateral_mm", lateral_mm, -3)?;
-        let force = self.0.table().force(depth, lateral);
+        let [d, x] =
+            [("depth_mm", depth_mm), ("lateral_mm", lateral_mm)].map(|(name, mm)| si(name, mm, -3));
+        self.map.get().at(d?, x?).map_err(refused)?;
+        let force = self.table.table().force(depth, lateral);
         Ok((force.lateral, force.normal))
     }
 
     /// The stiffness of the table, N/m: its steepest slope.
     #[getter]
     fn stiffness_n_per_m(&self) -> f64 {
-        servo::stiffness(&self.0.table())
+        servo::stiffness(&self.table.table())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (Py<ForceMap>,)) {
+        let map = slf.get().map.clone_ref(slf.py());
+        (slf.get_type(), (map,))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!("ServoTable({})", self.map.bind(py).repr()?))
     }
 }
 
-/// What commands must keep to, in N a component: the largest force, its growth and its fall in a cycle, and the longest run of cycles
-/// without a fresh sample.
+/// What commands must keep to: the largest force of a component, N; its growth in a cycle, N; its fall in a cycle, N, which is at least the growth and
+/// 1/16 of the largest force; and the longest run of cycles without a fresh sample, 1 to 100.
 #[pyclass(frozen, module = "palpate")]
 pub struct Limits(servo::Limits);
 
@@ -52,12 +70,39 @@ impl Limits {
         let limits = servo::Limits::new(force_n, slew_n, release_n, watchdog);
         Ok(Limits(limits.map_err(refused)?))
     }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (f32, f32, f32, u16)) {
+        let of = slf.get().0;
+        let limits = (of.force(), of.slew(), of.release(), of.watchdog());
+        (slf.get_type(), limits)
+    }
+
+    fn __repr__(&self) -> String {
+        let (force, slew, release) = (self.0.force(), self.0.slew(), self.0.release());
+        let watchdog = self.0.watchdog();
+        format!(
+            "Limits(force_n={force:?}, slew_n={slew:?}, release_n={release:?}, watchdog={watchdog})"
+        )
+    }
 }
 
 /// One report of the device: its number modulo 65536, the pose in mm, whether the deadman switch is held, and whether the device
 /// reports a fault. A pose may be NaN or infinite: the kernel makes a fault of it.
 #[pyclass(frozen, module = "palpate")]
 pub struct Sample(servo::Sample);
+
+impl Sample {
+    /// Depth and lateral position, mm, with the digits that an f32 has.
+    fn pose_mm(&self) -> [f64; 2] {
+        let mm = |metres: f32| {
+            metres
+                .to_string()
+                .parse()
+                .map_or(f64::NAN, |metres| in_unit(metres, 3))
+        };
+        [self.0.depth, self.0.lateral].map(mm)
+    }
+}
 
 #[pymethods]
 impl Sample {
@@ -78,6 +123,30 @@ impl Sample {
             depth: metres(depth_mm),
             lateral: metres(lateral_mm),
         })
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> (Bound<'py, PyType>, (u16, f64, f64, bool, bool)) {
+        let of = slf.get();
+        let [depth, lateral] = of.pose_mm();
+        let arguments = (
+            of.0.sequence,
+            depth,
+            lateral,
+            of.0.deadman,
+            of.0.device_fault,
+        );
+        (slf.get_type(), arguments)
+    }
+
+    fn __repr__(&self) -> String {
+        let ([depth, lateral], sequence) = (self.pose_mm(), self.0.sequence);
+        let [deadman, fault] =
+            [self.0.deadman, self.0.device_fault].map(|is| if is { "True" } else { "False" });
+        format!(
+            "Sample({sequence}, depth_mm={depth:?}, lateral_mm={lateral:?}, deadman={deadman}, device_fault={fault})"
+        )
     }
 }
 
@@ -123,10 +192,28 @@ impl ServoState {
     fn missed(&self) -> u16 {
         self.0.missed
     }
+
+    fn __repr__(&self) -> String {
+        let (mode, force, missed) = (self.mode(), self.force_n(), self.missed());
+        let fault = self
+            .fault()
+            .map_or(String::new(), |fault| format!(" ({fault})"));
+        format!("<ServoState {mode}{fault}, force_n {force:?}, missed {missed}>")
+    }
 }
 
 /// One cycle of the servo kernel: (next state, force (lateral, normal) in N, playing), where playing says that the force follows the
 /// table. sample: the newest report, None if none came; request: "none", "arm" or "disarm".
+///
+/// To arm, ask in one cycle after the first, with a fresh sample and the deadman switch not held; then hold it:
+///
+/// >>> table = ServoTable(Phantom("none").map([1, 4], [-5, 0, 5], mesh_mm=2))
+/// >>> limits, state = Limits(3, 0.05, 0.25, 5), ServoState()
+/// >>> for cycle in range(100):
+/// ...     sample = Sample(cycle, 2.0, 0.0, deadman=cycle > 1)
+/// ...     state, force, playing = step(table, limits, state, sample, "arm" if cycle == 1 else "none")
+/// >>> state.mode, playing, force[1] == table.force(2, 0)[1]
+/// ('armed', True, True)
 #[pyfunction]
 #[pyo3(signature = (table, limits, state, sample=None, request="none"))]
 pub fn step(
@@ -146,7 +233,7 @@ pub fn step(
         }
     };
     let sample = sample.map(|sample| sample.0);
-    let table = table.0.table();
+    let table = table.table.table();
     let (next, command) = servo::step(&table, &limits.0, state.0, Input { sample, request });
     Ok((
         ServoState(next),

@@ -6,7 +6,7 @@ use palpate::trace::Unknown;
 use pyo3::prelude::*;
 
 use crate::bank::{Bank, chosen};
-use crate::convert::{Any, list, pair, python, refused, si};
+use crate::convert::{Any, Names, list, pair, python, refused, si};
 
 /// Watcher(bank, noise_sd_n) judges a sweep against a bank while it is taken, as palpate watch does. noise_sd_n: of a sample in N, one for
 /// both channels or (lateral, normal). unknown: what is fitted, of offset, drift, gain and depth. max_false_alarm, max_miss: the rates of
@@ -21,14 +21,14 @@ pub struct Watcher {
 impl Watcher {
     /// Implements: PYT-032.
     #[new]
-    #[pyo3(signature = (bank, noise_sd_n, unknown=vec!["offset".into(), "drift".into(), "gain".into()], max_false_alarm=0.01,
+    #[pyo3(signature = (bank, noise_sd_n, unknown=Names::of(&["offset", "drift", "gain"]), max_false_alarm=0.01,
         max_miss=0.05, prior=None, prior_h1=0.5, zeroed=false),
         text_signature = "(bank, noise_sd_n, unknown=('offset', 'drift', 'gain'), max_false_alarm=0.01, max_miss=0.05, prior=None, prior_h1=0.5, zeroed=False)")]
     #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
     fn new(
         bank: &Bank,
         noise_sd_n: Any<'_, '_>,
-        unknown: Vec<String>,
+        unknown: Names,
         max_false_alarm: f64,
         max_miss: f64,
         prior: Option<Any<'_, '_>>,
@@ -36,7 +36,7 @@ impl Watcher {
         zeroed: bool,
     ) -> PyResult<Watcher> {
         let question = WatchQuestion {
-            unknown: chosen("unknown", unknown, Unknown::ALL)?,
+            unknown: chosen("unknown", unknown.list(), Unknown::ALL)?,
             noise_sd: pair("noise_sd_n", noise_sd_n)?,
             is_zeroed: zeroed,
             prior_h1,

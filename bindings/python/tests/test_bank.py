@@ -1,10 +1,11 @@
-"""Banks and counts of answers. Checks PYT-002, PYT-005, PYT-010, PYT-032."""
+"""Banks and counts of answers. Checks PYT-002, PYT-005, PYT-010, PYT-032, PYT-041."""
 
 import json
 import math
 
 import numpy as np
 import palpate
+import pandas as pd
 import pytest
 
 
@@ -53,9 +54,34 @@ def test_an_inclusion_is_found_where_it_is(bank):
     assert math.isclose(places[:, 0] @ probabilities, found["mean"]["position_mm"], rel_tol=1e-9)
     nothing = bank.locate(x, noisy(bank.reference.sweep(4, x)), noise_sd_n=0.05, unknown=[], white=True)
     assert nothing["inclusion"] is False and nothing["posterior_h1"] < 0.01
-    # Another unit: no decision, and the cause.
-    wrong = bank.locate(x, 1000 * forces, noise_sd_n=0.05, white=True)
-    assert wrong["inclusion"] is None and wrong["causes"] == ["misfit"]
+
+
+# PYT-041.
+def test_places_have_the_columns_of_the_axes(bank):
+    x = np.linspace(-8, 8, 161)
+    # A bank of three depths: at this noise the likeliest place is often at the end of an axis.
+    ends = 0
+    for seed in range(20):
+        noise = 0.5 * np.random.default_rng(seed).standard_normal((2, 161))
+        found = bank.locate(x, bank.maps[7].sweep(4, x) + noise, noise_sd_n=0.5, unknown="offset", white=True)
+        mean = pd.DataFrame(found["places"], columns=list(bank.axes)).mul(found["probabilities"], axis=0).sum()
+        for name in bank.axes:
+            assert list(found["estimate"]) == list(found["interval_95"]) == list(bank.axes)
+            assert math.isclose(mean[name], found["mean"][name], rel_tol=1e-9, abs_tol=1e-9), name
+            low, high = found["interval_95"][name]
+            estimate = found["estimate"][name]
+            ends += (low is None) + (high is None)
+            assert (low is None or low <= estimate) and (high is None or estimate <= high), (seed, name)
+            assert low is not None or estimate == bank.axes[name][0]
+    assert ends > 3
+
+
+def test_another_unit_sign_or_width_has_no_answer_but_a_cause(bank):
+    x = np.linspace(-8, 8, 161)
+    gel = noisy(bank.reference.sweep(4, x))
+    for positions, forces, cause in ((x, 1000 * gel, "force_unit"), (x, 102 * gel, "force_unit"), (x, -gel, "sign"), (x / 1000, gel, "narrow")):
+        for found in (bank.locate(positions, forces), bank.judge(positions, forces)):
+            assert found["inclusion"] is None and found["posterior_h1"] is None and cause in found["causes"], (cause, found)
 
 
 def test_an_inclusion_is_judged_whatever_the_gel_does(bank):
@@ -92,6 +118,7 @@ def test_questions_that_make_no_sense_are_refused(bank):
         ((x, nan), {}),
         ((x[:-1], forces), {}),
         ((x + 1, forces), {}),
+        ((x, forces), {"noise_sd_n": (math.inf, 0.1)}),
         ((x, forces), {"unknown": ["colour"]}),
         ((x, forces), {"max_miss": 0.1, "max_false_alarm": 0.1}),
         ((x, forces), {"max_miss": math.nan}),
@@ -111,6 +138,20 @@ def test_questions_that_make_no_sense_are_refused(bank):
         palpate.Bank.build(palpate.Phantom("none"), 4, [0])
 
 
+def test_refusals_name_the_arguments(bank):
+    x, forces = bank.reference.laterals_mm, bank.reference.row(4)
+    nan = forces.copy()
+    nan[1, 3] = math.nan
+    for message, call in (
+        (r"^forces_n\[1, 3\] is NaN or infinite", lambda: bank.locate(x, nan)),
+        (r"^positions_mm\[0\] = -9.6, but must be between -8 and 8, as in the bank", lambda: bank.judge(1.2 * x, forces)),
+        ("^noise_sd_n = inf, but must be finite", lambda: bank.locate(x, forces, noise_sd_n=(math.inf, 0.1))),
+        (r"has the shape \[2, 2, 17\]; give \[2, n\], the lateral and the normal samples of one", lambda: bank.locate(x, [forces, forces])),
+    ):
+        with pytest.raises(palpate.Refused, match=message):
+            call()
+
+
 def test_table_1(tmp_path):
     analysis = palpate.analyse_answers()
     playback = analysis["conditions"][1]
@@ -126,6 +167,8 @@ def test_table_1(tmp_path):
     path.write_text("subject,condition,trials,6.6\na,mine,10,9\nb,mine,10,5\n")
     own = palpate.analyse_answers(path)
     assert "noise_levels" not in own and own["conditions"][0]["inclusions"][0]["pooled"]["rate"] == 0.7
+    assert palpate.analyse_answers(pd.read_csv(path)) == own
+    assert palpate.count_analysis(pd.DataFrame(correct), 30) == counts
     path.write_text("subject,condition,trials,6.6\na,mine,10,11\n")
     with pytest.raises(palpate.Refused, match="own.csv:2: 6.6"):
         palpate.analyse_answers(path)

@@ -62,7 +62,7 @@ def test_a_batch_refuses_what_single_records_refuse():
         with pytest.raises(palpate.Refused, match="y_x is too large"):
             palpate.theta(observed, f0, f1, 1e307)
     for observed in (f0, [f0]):
-        with pytest.raises(palpate.Refused, match="^noise_sd_y is 0, but must be"):
+        with pytest.raises(palpate.Refused, match="^noise_sd_n = 0, but must be"):
             palpate.theta(observed, f0, f1, (1.0, 0.0))
 
 
@@ -102,7 +102,7 @@ def test_any_array_will_do():
 def test_no_number_that_is_not_finite_passes(wrong):
     observed, f0, f1 = records(5000, 41)
     observed[4321, 1, 7] = wrong
-    with pytest.raises(palpate.Refused, match=r"^record 4321: observed_y\[7\] is NaN or infinite"):
+    with pytest.raises(palpate.Refused, match=r"^record 4321: observed\[1, 7\] is NaN or infinite"):
         palpate.theta(observed, f0, f1, 0.1)
     template = f1 - f0
     with pytest.raises(palpate.Refused, match="record 4321"):

@@ -1,11 +1,13 @@
 """Names, signatures, docstrings, and what is in the wheel. Checks PYT-001, PYT-009."""
 
 import ast
+import doctest
 import importlib.metadata
 import inspect
 import re
 from pathlib import Path
 
+import numpy as np
 import palpate
 
 STUBS = Path(palpate.__file__).with_name("__init__.pyi")
@@ -28,7 +30,7 @@ def stubbed(node):
 
 def test_the_stubs_have_the_names_and_signatures_of_the_module():
     tree = ast.parse(STUBS.read_text())
-    defined = {node.name: node for node in tree.body if hasattr(node, "name")}
+    defined = {node.name: node for node in tree.body if hasattr(node, "name") and not node.name.startswith("_")}
     module = {name: value for name, value in public(palpate).items() if not inspect.ismodule(value)}
     assert set(defined) | {"build"} == set(module)
     for name, node in defined.items():
@@ -58,7 +60,7 @@ def documented():
 def test_every_name_says_what_it_is_with_shape_and_unit():
     no_unit = {
         # Texts, phantoms, maps and errors: no numbers.
-        "Refused", "Phantom.from_toml", "Phantom.name", "ForceMap.read", "ForceMap.phantom", "Bank", "Bank.read", "Bank.write",
+        "Refused", "Phantom.from_toml", "Phantom.name", "ForceMap.read", "ForceMap.from_json", "Bank.from_json", "ForceMap.phantom", "Bank", "Bank.read", "Bank.write",
         "Bank.reference", "Bank.maps", "ServoState", "ServoState.mode", "ServoState.fault", "ServoState.missed",
         # Ratios and probabilities.
         "Statistic", "Statistic.theta", "Statistic.gamma", "MatchedFilter.gamma", "ask",
@@ -72,6 +74,16 @@ def test_every_name_says_what_it_is_with_shape_and_unit():
         assert "Implements" not in text, name
         count += 1
     assert count > 70
+
+
+def test_the_examples_of_docstrings_print_what_they_show():
+    names = {name: getattr(palpate, name) for name in public(palpate)}
+    examples = 0
+    for name, value in documented():
+        [test] = [doctest.DocTestParser().get_doctest(value.__doc__, {**names, "np": np}, name, None, 0)]
+        examples += len(test.examples)
+        assert doctest.DocTestRunner().run(test).failed == 0, name
+    assert examples > 15
 
 
 def test_every_function_of_arrays_says_their_shape():

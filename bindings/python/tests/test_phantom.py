@@ -1,8 +1,10 @@
-"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-002, PYT-010."""
+"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-002, PYT-010, PYT-040, PYT-042."""
 
 import _thread
 import json
 import math
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -72,6 +74,7 @@ def test_keywords_change_numbers(phantom):
     for edits, message in [
         ({"layer_thickness_mm": 3}, "layer_thickness_mm: the phantom has 2 of these; say which, from 0, as in layer_0_thickness_mm"),
         ({"layer_2_thickness_mm": 3}, "has 2 of these"),
+        ({"layer_gel_youngs_modulus_kpa": 3}, "say which, from 0, as in layer_0_youngs_modulus_kpa"),
         ({"probe_radius_m": 3}, "probe.radius_m"),
         ({"colour": "red"}, "colour"),
         ({"probe_radius_mm": "5"}, "probe.radius_mm"),
@@ -88,6 +91,12 @@ def test_keywords_change_numbers(phantom):
 def test_refusals_have_the_words_of_the_program(phantom, tmp_path):
     with pytest.raises(palpate.Refused, match='^no phantom named "7" is built in; built in are none, 2.6, 4.6, 6.6, 8.6$'):
         palpate.Phantom("7")
+    with pytest.raises(palpate.Refused, match='^depth 3.0 mm is not in the map; give one of 1.0, 2.0 mm$'):
+        phantom.map([1, 2], [0], **COARSE).row(3)
+    with pytest.raises(palpate.Refused, match=r"^depths_mm\[1\] = 1, but must be more than 2, the one before it$"):
+        phantom.map([2, 1], [0], **COARSE)
+    with pytest.raises(TypeError, match='^name is 6.6, but must be a text, such as "6.6"$'):
+        palpate.Phantom(6.6)
     for call in (
         lambda: phantom.solve(depth_mm=-1),
         lambda: phantom.solve(depth_mm=math.nan),
@@ -154,7 +163,7 @@ def test_forces_between_and_beyond_the_poses(force_map):
     assert np.array_equal(force_map.sweep(2, force_map.laterals_mm), force_map.row(2))
     assert np.allclose(force_map.sweep(3, [1.5])[:, 0], np.mean([force_map.row(d)[:, c] for d in (2, 4) for c in (2, 3)], axis=0))
     table = dict(depths_m=[0.001, 0.002, 0.004], laterals_m=[-0.006, -0.003, 0.0, 0.003, 0.006])
-    depth, lateral = np.array([[0.5], [1.7], [4.4]]), np.array([-7.0, -6.0, 1.25, 9.0])
+    depth, lateral = np.array([[1.0], [1.7], [4.0]]), np.array([-6.0, -2.5, 1.25, 6.0])
     found = force_map.force(depth, lateral)
     for of, forces in zip(found, (force_map.lateral_n, force_map.normal_n)):
         assert of.shape == (3, 4)
@@ -168,10 +177,60 @@ def test_forces_between_and_beyond_the_poses(force_map):
         lambda: force_map.sweep(5, [0]),
         lambda: force_map.sweep(2, [0, 6.1]),
         lambda: force_map.force(math.nan, 0),
+        lambda: force_map.force(4.1, 0),
+        lambda: force_map.force(0.5, 6.1),
+        lambda: palpate.ServoTable(force_map).force(4.1, 0),
+        lambda: palpate.ServoTable(force_map).force(2, -6.1),
         lambda: force_map.force(1, [0, math.inf]),
     ):
         with pytest.raises(palpate.Refused):
             call()
+
+
+# PYT-040.
+def test_there_is_no_force_in_air_and_a_line_to_the_first_depth(force_map):
+    table = palpate.ServoTable(force_map)
+    for depth, share in ((-1, 0), (0, 0), (0.5, 0.5), (1, 1)):
+        for lateral in (-6, 3):
+            expected = share * force_map.row(1)[:, force_map.laterals_mm.tolist().index(lateral)]
+            assert np.allclose(force_map.force(depth, lateral), expected, rtol=1e-12, atol=0)
+            # Single precision.
+            assert np.allclose(table.force(depth, lateral), expected, rtol=1e-6, atol=0)
+    assert force_map.force(-3, 99) == (0, 0)
+
+
+# PYT-042.
+def test_metres_are_doubted(phantom):
+    one = [[1.0, 1.0], [1.0, 1.0]]
+    for call, name in (
+        (lambda: phantom.solve(0.004, **COARSE), "depth_mm is at most 0.004 mm"),
+        (lambda: palpate.ForceMap([0.001, 0.002], [-8, 8], one, one), "depths_mm"),
+        (lambda: palpate.ForceMap([1, 2], [-0.008, 0.008], one, one), "laterals_mm"),
+        (lambda: phantom.map([0.001, 0.004], [0, 1], **COARSE), "depths_mm"),
+        (lambda: palpate.Bank.build(phantom, 4, [-0.004, 0, 0.004], offsets_mm=[0], **COARSE), "laterals_mm"),
+    ):
+        with pytest.warns(UserWarning, match=name):
+            call()
+
+
+# PYT-010.
+@pytest.mark.parametrize(
+    "call",
+    [
+        "palpate.Phantom('6.6').solve(4, 1, mesh_mm=0.13)",
+        "palpate.simulate_theta(z, z + 0.01, 0.1, True, 20_000_000)",
+        "palpate.theta_coloured(np.ones((2, 900)), np.ones((2, 900)), np.eye(1800))",
+    ],
+)
+def test_control_c_ends_every_long_call(call):
+    program = (
+        "import _thread, threading, time, numpy as np, palpate; z = np.zeros((2, 161)); t = [0.0]\n"
+        "def stop(): t[0] = time.monotonic(); _thread.interrupt_main()\n"
+        f"threading.Timer(0.3, stop).start()\ntry: {call}\nexcept KeyboardInterrupt: print(time.monotonic() - t[0])"
+    )
+    waited = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
+    # Each takes 3 s and more to its end; a call looks every 50 ms, or for 2^23 samples.
+    assert waited and float(waited) < 1.5, (call, waited)
 
 
 def test_progress_counts_the_poses(phantom):

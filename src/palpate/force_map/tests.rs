@@ -525,5 +525,8 @@ fn a_map_cut_to_some_positions_keeps_their_columns() {
     assert_eq!(certificate.min_det.row(1), [0.9, 0.85]);
     // The column of the smallest is gone: it is that of the rest.
     assert_eq!(certificate.smallest_det.det, 0.85);
-    assert_error(map.at_laterals(&[0.0, 0.003]), "[..]3.0 mm[..]");
+    assert_error(
+        map.at_laterals(&[0.0, 0.003]),
+        "[..] 3.0 mm is not in the map[..]",
+    );
 }
