@@ -42,19 +42,15 @@ pub fn coverage_figure(places: &[WatchedPlace]) -> Result<String, Refusal> {
         let count = places.iter().filter(|place| place.told == told).count();
         format!("{name}: {count}")
     });
+    let depths = places.iter().map(|place| 1e3 * place.depth);
     let panel = Panel {
         x_name: "Lateral position of the inclusion (mm)".into(),
         ..Panel::new(
             "Depth of its highest point (mm)",
-            [ends[0] - 1.0, ends[1] + 1.0],
+            [[ends[0] - 1.0, ends[1] + 1.0], round_range(depths)],
             300,
             lines.into(),
         )
-    };
-    let depths = places.iter().map(|place| 1e3 * place.depth);
-    let panel = Panel {
-        y: round_range(depths),
-        ..panel
     };
     let title = "What the sweep has told of each place";
     chart(

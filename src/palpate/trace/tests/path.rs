@@ -188,7 +188,7 @@ fn passes_end_where_the_probe_turns() {
     // All are of one place.
     assert_eq!(passes[1].place(), Some([-4e-3, 4e-3]));
     let pass = read(EXAMPLE).unwrap();
-    assert_eq!(pass.passes(), [pass.clone()]);
+    assert_eq!(pass.passes(), std::slice::from_ref(&pass));
 }
 
 // Verifies: TRC-084.
