@@ -282,7 +282,7 @@ class Bank:
     @staticmethod
     def build(
         phantom: Phantom,
-        probe_depth_mm: float,
+        probe_depth_mm: ArrayLike,
         laterals_mm: ArrayLike,
         offsets_mm: ArrayLike | None = None,
         depths_mm: ArrayLike | None = None,
@@ -318,6 +318,7 @@ class Bank:
         sure: float = 0.95,
         prior: ArrayLike | None = None,
         prior_h1: float = 0.5,
+        depths_mm: ArrayLike | None = None,
     ) -> _Judged: ...
     def locate(
         self,
@@ -332,6 +333,7 @@ class Bank:
         prior: ArrayLike | None = None,
         prior_h1: float = 0.5,
         zeroed: bool = False,
+        depths_mm: ArrayLike | None = None,
     ) -> _Located: ...
 
 @final
@@ -348,7 +350,11 @@ class Watcher:
         zeroed: bool = False,
     ) -> Watcher: ...
     def push(
-        self, position_mm: float, normal_force_n: float, lateral_force_n: float | None = None
+        self,
+        position_mm: float,
+        normal_force_n: float,
+        lateral_force_n: float | None = None,
+        depth_mm: float | None = None,
     ) -> dict[str, Any]: ...
 
 def calibrate(

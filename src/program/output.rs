@@ -15,6 +15,7 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::CliError;
+use super::platform::is_closed_pipe;
 use palpate::refusal::one_line;
 
 /// The format of an answer.
@@ -116,7 +117,7 @@ pub fn print(text: &str) -> Result<(), CliError> {
 /// How it went to write to standard output; a reader that closes the pipe is no error.
 pub(super) fn printed(written: std::io::Result<()>) -> Result<(), CliError> {
     match written {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+        Err(error) if !is_closed_pipe(&error) => {
             Err(CliError::Check(format!("standard output: {error}")))
         }
         _ => Ok(()),

@@ -1,5 +1,6 @@
-//! What differs between operating systems while a map is played: the signals that end it, and the priority of the servo thread.
+//! What differs between operating systems: the signals that end the program, the priority of the servo thread, a pipe that is closed.
 
+use std::io::{Error, ErrorKind};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -18,6 +19,12 @@ pub(super) fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
         hook.map_err(CliError::refused(format_args!("signal {signal}")))?;
     }
     Ok(stop)
+}
+
+/// Whether a write failed because nobody reads the pipe any more.
+pub(super) fn is_closed_pipe(error: &Error) -> bool {
+    // Windows has a second error for it, "pipe not connected".
+    error.kind() == ErrorKind::BrokenPipe || cfg!(windows) && error.raw_os_error() == Some(233)
 }
 
 #[cfg(unix)]

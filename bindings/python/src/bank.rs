@@ -101,7 +101,12 @@ fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
 /// The record of forces, or of normal forces alone, at positions over a bank.
 ///
 /// Implements: PYT-005.
-fn record(bank: &bank::Bank, positions_mm: Any, forces_n: Any) -> PyResult<Record> {
+fn record(
+    bank: &bank::Bank,
+    positions_mm: Any,
+    forces_n: Any,
+    depths_mm: Option<Any>,
+) -> PyResult<Record> {
     let positions = list("positions_mm", positions_mm, -3)?;
     let laterals = bank.reference().table().laterals();
     let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
@@ -131,12 +136,20 @@ fn record(bank: &bank::Bank, positions_mm: Any, forces_n: Any) -> PyResult<Recor
             "forces_n[{at}] is NaN or infinite; leave such samples out"
         )));
     }
-    if let [_] = values.shape() {
-        let forces = Force::new(&[][..], values.as_slice()?);
-        return Record::new("record", &positions, forces).map_err(refused);
-    }
-    let forces = Records::one("forces_n", forces_n)?;
-    Record::new("record", &positions, forces.force()?).map_err(refused)
+    let both;
+    let forces = match values.shape() {
+        [_] => Force::new(&[][..], values.as_slice()?),
+        _ => {
+            both = Records::one("forces_n", forces_n)?;
+            both.force()?
+        }
+    };
+    let depths = depths_mm.map(|depths| list("depths_mm", depths, -3));
+    let record = match depths.transpose()? {
+        None => Record::new("record", &positions, forces),
+        Some(depths) => Record::along("record", &positions, &depths, forces),
+    };
+    record.map_err(refused)
 }
 
 /// Those of `all` that the `names` under a key of Python name.
@@ -213,7 +226,7 @@ impl Bank {
     }
 
     /// The bank for the one inclusion of phantom, varied: x of its centre (offsets_mm), depth, diameter, all in mm, and Young's modulus in
-    /// kPa, each a number or an array, or None for that of the phantom. probe_depth_mm and laterals_mm, shape (n,), in mm: the sweep. mesh_mm
+    /// kPa, each a number or an array, or None for that of the phantom. probe_depth_mm, a depth or several, and laterals_mm, shape (n,), in mm: the sweeps. mesh_mm
     /// and contact as of Phantom.solve; progress as of Phantom.map, with numbers of computations.
     // Implements: PYT-010, PYT-020.
     #[staticmethod]
@@ -223,7 +236,7 @@ impl Bank {
     fn build(
         py: Python<'_>,
         phantom: &Phantom,
-        probe_depth_mm: f64,
+        probe_depth_mm: Any,
         laterals_mm: Any,
         offsets_mm: Option<Any>,
         depths_mm: Option<Any>,
@@ -233,11 +246,12 @@ impl Bank {
         contact: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bank> {
-        doubt_metres(py, "probe_depth_mm", &[probe_depth_mm])?;
-        let depth = si("probe_depth_mm", probe_depth_mm, -3)?;
+        let depths = lengths("probe_depth_mm", probe_depth_mm)?;
         let laterals = lengths("laterals_mm", laterals_mm)?;
-        let plan = BankPlan::new(phantom.0.clone(), depth, &laterals);
+        let deepest = depths.last().copied().unwrap_or_default();
+        let plan = BankPlan::new(phantom.0.clone(), deepest, &laterals);
         let mut plan = plan.map_err(refused)?;
+        plan.probe_depths = depths;
         plan.mesh_size = si("mesh_mm", mesh_mm, -3)?;
         plan.contact = crate::phantom::contact(contact)?;
         for (name, values, power, place) in [
@@ -315,10 +329,12 @@ impl Bank {
     /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N, or (n,), normal alone. noise_sd_n: of a sample in
     /// N, one for both channels or (lateral, normal), or None if the record tells. known: what does not disturb the sweep, of smooth, gel, support,
     /// stage, surface, tilt, friction, relaxation and walk. zeroed: whether the sensor was set to zero on the gel. sure: the posterior from
-    /// which there is an inclusion. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion. The first call
-    /// computes the gels beside that of the bank.
-    #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, known=Names::of(&[]), zeroed=false, sure=0.95, prior=None, prior_h1=0.5),
-        text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, known=(), zeroed=False, sure=0.95, prior=None, prior_h1=0.5)")]
+    /// which there is an inclusion. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion. depths_mm: shape (n,), of
+    /// each sample, in the order of time, for a bank of several depths of the probe; the passes are then judged together. The first call
+    /// computes the gels beside that of the bank, one with depths_mm each time.
+    #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, known=Names::of(&[]), zeroed=false, sure=0.95, prior=None, prior_h1=0.5,
+        depths_mm=None),
+        text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, known=(), zeroed=False, sure=0.95, prior=None, prior_h1=0.5, depths_mm=None)")]
     #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
     fn judge<'py>(
         &self,
@@ -331,8 +347,9 @@ impl Bank {
         sure: f64,
         prior: Option<Any<'_, 'py>>,
         prior_h1: f64,
+        depths_mm: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let record = record(&self.bank, positions_mm, forces_n)?;
+        let record = record(&self.bank, positions_mm, forces_n, depths_mm)?;
         let prior = prior.map(|prior| list("prior", prior, 0)).transpose()?;
         let known = chosen("known", known.list(), Part::known())?;
         let question = RobustQuestion {
@@ -344,13 +361,25 @@ impl Bank {
             sure,
         };
         let found = py.detach(|| -> PyResult<_> {
-            let sweep = RobustSweep {
-                record: &record,
+            let reference = self.bank.reference();
+            let (passes, _) = question.passes(&record, reference);
+            let along: Vec<&Record> = passes.iter().collect();
+            let own;
+            let changes = match record.depths() {
+                None => self.changes()?,
+                Some(_) => {
+                    own = GelChanges::along(reference, &along, &GelUncertainty::default());
+                    own.as_ref().map_err(refused)?.as_ref()
+                }
+            };
+            let sweep = |record| RobustSweep {
+                record,
                 depth: self.bank.depth(),
-                changes: self.changes()?,
+                changes,
                 is_reference: false,
             };
-            let found = question.locate(&self.bank, prior.as_deref(), &[sweep]);
+            let sweeps: Vec<_> = along.into_iter().map(sweep).collect();
+            let found = question.locate(&self.bank, prior.as_deref(), &sweeps);
             found.map_err(refused)
         });
         let (answer, place) = found?;
@@ -368,9 +397,9 @@ impl Bank {
     /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N, or (n,), normal alone. noise_sd_n: of a sample in
     /// N, one for both channels or (lateral, normal), or None if the record tells. unknown: what is fitted, of offset, drift, gain, depth and variance.
     /// white: do not test the record for correlated noise. zeroed: whether the sensor was set to zero on the gel. The decision is for the fewest errors, or keeps
-    /// max_miss or max_false_alarm. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion.
-    #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, unknown=Names::of(&["offset", "drift", "gain", "variance"]), white=false, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=false),
-        text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, unknown=('offset', 'drift', 'gain', 'variance'), white=False, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=False)")]
+    /// max_miss or max_false_alarm. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion. depths_mm as of judge.
+    #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, unknown=Names::of(&["offset", "drift", "gain", "variance"]), white=false, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=false, depths_mm=None),
+        text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, unknown=('offset', 'drift', 'gain', 'variance'), white=False, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=False, depths_mm=None)")]
     #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
     fn locate<'py>(
         &self,
@@ -386,8 +415,9 @@ impl Bank {
         prior: Option<Any<'_, 'py>>,
         prior_h1: f64,
         zeroed: bool,
+        depths_mm: Option<Any<'_, 'py>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let record = record(&self.bank, positions_mm, forces_n)?;
+        let record = record(&self.bank, positions_mm, forces_n, depths_mm)?;
         let sd = noise_sd_n.map(|sd| pair("noise_sd_n", sd)).transpose()?;
         let correlation = match white {
             true => Correlation::None,

@@ -19,7 +19,7 @@ pub struct Watcher {
 
 #[pymethods]
 impl Watcher {
-    /// Implements: PYT-032.
+    /// Implements: PYT-032, PYT-048.
     #[new]
     #[pyo3(signature = (bank, noise_sd_n, unknown=Names::of(&["offset", "drift", "gain"]), max_false_alarm=0.01,
         max_miss=0.05, prior=None, prior_h1=0.5, zeroed=false),
@@ -48,20 +48,24 @@ impl Watcher {
     }
 
     /// Adds a sample and returns what all samples so far say, a dictionary with the keys of palpate watch, in SI (posterior_h1, decision,
-    /// likeliest, open_positions_m ...). position_mm in mm, the forces in N, without a lateral one if the sensor has none; a NaN is missing.
-    #[pyo3(signature = (position_mm, normal_force_n, lateral_force_n=None))]
+    /// likeliest, open_positions_m ...). position_mm in mm, the forces in N, without a lateral one if the sensor has none; depth_mm of the sample,
+    /// in mm, for a bank of several depths of the probe; a NaN is missing.
+    #[pyo3(signature = (position_mm, normal_force_n, lateral_force_n=None, depth_mm=None))]
     fn push<'py>(
         &mut self,
         py: Python<'py>,
         position_mm: f64,
         normal_force_n: f64,
         lateral_force_n: Option<f64>,
+        depth_mm: Option<f64>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        let x = match position_mm.is_nan() {
-            true => f64::NAN,
-            false => si("position_mm", position_mm, -3)?,
+        let metres = |name, value: f64| match value.is_nan() {
+            true => Ok(f64::NAN),
+            false => si(name, value, -3),
         };
-        let pushed = self.watcher.push(x, lateral_force_n, normal_force_n);
+        let x = metres("position_mm", position_mm)?;
+        let depth = depth_mm.map(|depth| metres("depth_mm", depth)).transpose()?;
+        let pushed = (self.watcher).push_at(x, depth, lateral_force_n, normal_force_n);
         let answer = pushed.and_then(|()| self.watcher.answer());
         python(py, &answer.map_err(refused)?)
     }

@@ -202,3 +202,23 @@ def test_a_sweep_is_watched_sample_by_sample(bank):
         watcher.push(0, math.inf)
     with pytest.raises(palpate.Refused):
         watcher.push(math.inf, 1)
+
+
+def test_each_sample_may_have_its_depth():
+    bank = palpate.Bank.build(palpate.Phantom("6.6"), [2, 4], np.arange(-8, 9.0), offsets_mm=[-2, 0, 2], mesh_mm=1)
+    x, truth = np.linspace(-8, 8, 161), bank.maps[2]
+    record = noisy(np.hstack([truth.sweep(2, x), truth.sweep(4, x[::-1])]))
+    path = {"positions_mm": np.hstack([x, x[::-1]]), "depths_mm": np.repeat([2.0, 4.0], 161)}
+    whole = bank.locate(forces_n=record, noise_sd_n=0.05, unknown=["offset", "gain"], white=True, **path)
+    assert whole["inclusion"] and whole["likeliest"]["position_mm"] == 2
+    judged = bank.judge(forces_n=record, noise_sd_n=0.05, **path)
+    assert judged["inclusion"] and len(judged["levels"]) == 2
+    watcher = palpate.Watcher(bank, noise_sd_n=0.05, unknown=["offset", "gain"])
+    for sample in zip(path["positions_mm"], record[1], record[0], path["depths_mm"]):
+        last = watcher.push(*sample)
+    assert math.isclose(last["theta"], whole["theta_mixture"], abs_tol=1e-9)
+    for call in (bank.locate, bank.judge):
+        with pytest.raises(palpate.Refused):
+            call(x, truth.sweep(4, x), noise_sd_n=0.05, depths_mm=[4.0])
+    with pytest.raises(palpate.Refused):
+        watcher.push(0, 1.5, 0)
