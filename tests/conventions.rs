@@ -33,10 +33,10 @@ const UNITS: [&str; 7] = ["mm", "mm-s", "kpa", "us", "ms", "n", "s"];
 
 /// Options whose value is no quantity, has no unit, or is in SI.
 const NO_OTHER_UNIT: &str = "\
-    allowed-misses allowed-run bank columns condition confidence-percent config contact criterion cycles \
-    device figure format friction from gel-uncertainty inclusion journal junit known layer map max-false-alarm max-force max-miss model \
-    noise note observer only out percentile phantom pid prior prior-h1 pvd record reference reference-sweep replay \
-    samples seconds seed serial shard simulations skip-rows soak strain study subject sure trials uncertainty-out vectors vid vtu";
+    allowed-misses allowed-run bank columns condition confidence-percent config contact correlation criterion cycles \
+    device figure format friction from gel-uncertainty hand inclusion journal junit known layer map max-false-alarm max-force max-miss \
+    model noise note observer only out path percentile phantom pid prior prior-h1 pvd rate-hz record records reference reference-sweep \
+    relaxation replay tremor-hz samples seconds seed serial shard simulations skip-rows soak strain study subject sure trials uncertainty-out vectors vid vtu";
 
 // Verifies: CON-002.
 #[test]

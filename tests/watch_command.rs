@@ -308,3 +308,32 @@ fn what_cannot_be_watched_is_refused_after_what_could() {
         );
     }
 }
+
+// Verifies: CLI-233, SEQ-026, SEQ-022.
+#[test]
+fn the_figure_shows_what_half_a_sweep_has_told() {
+    let text = sweep("sweep-without");
+    let half: String = text
+        .lines()
+        .take(180)
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let (answers, ..) = watched(&format!("{WATCH} --figure half.svg"), &half);
+    let last = &answers[answers.len() - 1];
+    let count = |key: &str| last[key].as_u64().unwrap();
+    let [places, covered, excluded] = ["places", "covered", "excluded"].map(count);
+    // Five positions at two depths; the sweep ends at −0.84 mm, so that it tells of what lies left and nothing of what lies right.
+    assert_eq!(places, 10);
+    assert!(
+        excluded > 0 && excluded < covered && covered < places,
+        "{last}"
+    );
+    let [uncovered, open] = [places - covered, covered - excluded];
+    let figure = place().read("half.svg");
+    let words = format!(
+        "Of 10 places, not covered by the path: {uncovered}, an inclusion is open: {open}, an inclusion is excluded: {excluded}."
+    );
+    assert_has(&figure, &words);
+    // A dot for each place, and one in the key for each kind.
+    assert_eq!(figure.matches("<circle").count() as u64, places + 3);
+}

@@ -1,5 +1,5 @@
-/* Plays forces of palpate on the device of any maker: bridge palpate play --map gel.json --device pipe --seconds 60
-   Needs POSIX. Implements: HID-113. */
+/* Plays forces of palpate on the device of any maker (POSIX): bridge palpate play --map gel.json --device pipe --seconds 60 */
+/* Implements: HID-113. */
 #include "vendor.h"
 #include <errno.h>
 #include <fcntl.h>

@@ -31,6 +31,11 @@ def formula(found):
     return found[0]
 
 
+def as_index(path):
+    """A folder's page has another name in the site."""
+    return path.replace("README.md", "index.md")
+
+
 def stage(source):
     """Copies the pages, and the files that they link to, to where mdbook reads them."""
     summary = (SITE / "SUMMARY.md").read_text()
@@ -43,19 +48,20 @@ def stage(source):
                 return found[0]
             if target.is_dir():
                 return words
-            if target.suffix != ".md":
-                copy = source / os.path.relpath(target.resolve(), ROOT)
-                copy.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copy(target, copy)
+            if target.suffix == ".md":
+                return as_index(found[0])
+            copy = source / os.path.relpath(target.resolve(), ROOT)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(target, copy)
             return found[0]
 
         text = LINK.sub(link, (ROOT / page).read_text())
         if page == "docs/theory.md":
             text = FORMULA.sub(formula, text)
-        path = source / page
+        path = source / as_index(page)
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    (source / "SUMMARY.md").write_text(summary)
+    (source / "SUMMARY.md").write_text(as_index(summary))
 
 
 class Links(html.parser.HTMLParser):

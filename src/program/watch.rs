@@ -15,9 +15,10 @@ use super::detect::arguments::{Known, NoiseSd};
 use super::error::refuse;
 use super::layout::LayoutArguments;
 use super::numbers::probability;
-use super::output::{Envelope, printed};
+use super::output::{self, Envelope, printed};
 use super::platform::stop_on_signals;
 use palpate::bank::{Bank, WatchAnswer, WatchQuestion, Watcher};
+use palpate::chart::coverage_figure;
 use palpate::detect::sequential::Wald;
 use palpate::detect::{Decision, required_gamma};
 use palpate::trace::{LiveSamples, Unknown, reasons, refused};
@@ -63,6 +64,9 @@ pub struct WatchArguments {
     /// Least time between two answers in ms; a new decision and the last answer are always written
     #[arg(long, value_name = "N", default_value_t = 0)]
     every_ms: u64,
+    /// Writes a figure as SVG when the sweep is over: what it has told of each place of the bank
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
     #[command(flatten)]
     layout: LayoutArguments,
 }
@@ -82,7 +86,7 @@ struct Line<'a> {
 
 /// Runs the command.
 ///
-/// Implements: CLI-183, CLI-184.
+/// Implements: CLI-183, CLI-184, CLI-233.
 pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
     let bank = Bank::read(&arguments.bank)?;
     let prior = arguments.prior.as_ref();
@@ -128,6 +132,9 @@ pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
             "-: standard input has no samples; give a header and at least one row, or JSON objects"
         );
     };
+    if let Some(path) = &arguments.figure {
+        output::write(path, &coverage_figure(&watcher.places())?)?;
+    }
     match write(&answer, Some(&question.test))? && answer.decision.is_none() {
         true => Err(CliError::Unjudged(why_undecided(&answer))),
         false => Ok(()),

@@ -7,8 +7,8 @@ use crate::map::check_csv;
 use crate::message::check_file_message;
 use crate::{FILE, Outcome, judged};
 
-/// An accepted trace has finite forces, lateral ones or none, at positions that go one way but for jitter, and is the same when these are
-/// written and read again; a refusal names file and line, and quotes what stands there.
+/// An accepted trace has finite forces, lateral ones or none, at positions that go one way but for jitter unless each has its depth, and is
+/// the same when these are written and read again; a refusal names file and line, and quotes what stands there.
 pub fn trace_csv(text: &str) -> Outcome {
     let refused = |error: Refusal| {
         assert!(error.line.is_some(), "{error}");
@@ -39,7 +39,13 @@ fn check_trace(trace: Trace, text: &str) {
     };
     let positions = record.positions();
     assert!(!positions.is_empty() && positions.iter().all(|x| x.is_finite()));
-    assert!(positions[0] <= positions[positions.len() - 1]);
+    match record.depths() {
+        None => assert!(positions[0] <= positions[positions.len() - 1]),
+        Some(depths) => {
+            assert_eq!(depths.len(), positions.len());
+            assert!(depths.iter().all(|depth| depth.is_finite()));
+        }
+    }
     let forces = record.forces();
     assert_eq!(forces.normal.len(), positions.len());
     let has_lateral = !forces.lateral.is_empty();
@@ -65,10 +71,13 @@ fn written(record: &Record) -> String {
     } else {
         ",lateral_force_n"
     };
-    let mut text = format!("position_m,normal_force_n{head}\n");
+    let depths = record.depths();
+    let depth_head = depths.map_or("", |_| ",depth_m");
+    let mut text = format!("position_m,normal_force_n{head}{depth_head}\n");
     for (at, position) in record.positions().iter().enumerate() {
         let lateral = lateral(at).unwrap_or_default();
-        text += &format!("{position:?},{:?}{lateral}\n", forces.normal[at]);
+        let depth = depths.map_or(String::new(), |depths| format!(",{:?}", depths[at]));
+        text += &format!("{position:?},{:?}{lateral}{depth}\n", forces.normal[at]);
     }
     text
 }

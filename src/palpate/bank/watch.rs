@@ -114,6 +114,28 @@ pub struct LikeliestPlace {
     pub probability: f64,
 }
 
+/// What the samples so far say of a place, from the least on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Told {
+    /// The path has not covered it.
+    Uncovered,
+    /// An inclusion may be there.
+    Open,
+    /// An inclusion is excluded.
+    Excluded,
+}
+
+/// A place of the bank with a prior above 0, and what is known of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WatchedPlace {
+    /// x of the centre of the inclusion, m.
+    pub position: f64,
+    /// Depth of its highest point, m.
+    pub depth: f64,
+    /// What the samples say of it.
+    pub told: Told,
+}
+
 impl Watcher {
     /// Before the first sample.
     ///
@@ -361,6 +383,23 @@ impl Watcher {
         mixture_theta(&theta, &self.prior)
     }
 
+    /// What the samples so far say of each place that may be there.
+    ///
+    /// Implements: SEQ-026.
+    pub fn places(&self) -> Vec<WatchedPlace> {
+        let may_be_excluded = self.causes(self.likeliest()).next().is_none();
+        let place = |(place, of): (usize, Evidence)| WatchedPlace {
+            position: self.points[place][0],
+            depth: self.points[place][1],
+            told: match (self.is_covered(of), may_be_excluded && self.is_excluded(of)) {
+                (false, _) => Told::Uncovered,
+                (true, false) => Told::Open,
+                (true, true) => Told::Excluded,
+            },
+        };
+        self.possible().map(place).collect()
+    }
+
     /// What the samples so far say.
     ///
     /// # Errors
@@ -371,12 +410,11 @@ impl Watcher {
         let (best, theta) = (self.likeliest(), self.theta()?);
         let causes: Vec<Cause> = self.causes(best).collect();
         let answered = self.answered.filter(|_| causes.is_empty());
-        let is_excluded = |of| causes.is_empty() && self.is_excluded(of);
-        let count =
-            |is: &dyn Fn(Evidence) -> bool| self.possible().filter(|&(_, of)| is(of)).count();
-        let positions = |is: &dyn Fn(Evidence) -> bool| {
-            let places = self.possible().filter(|&(_, of)| is(of));
-            increasing(places.map(|(place, _)| self.points[place][0]))
+        let places = self.places();
+        let count = |least: Told| places.iter().filter(|of| of.told >= least).count();
+        let positions = |most: Told| {
+            let places = places.iter().filter(|of| of.told <= most);
+            increasing(places.map(|of| of.position))
         };
         Ok(WatchAnswer {
             samples: self.samples,
@@ -397,11 +435,11 @@ impl Watcher {
                     probability,
                 }
             }),
-            places: count(&|_| true),
-            covered: count(&|of| self.is_covered(of)),
-            excluded: count(&is_excluded),
-            open_positions_m: positions(&|of| !is_excluded(of)),
-            uncovered_positions_m: positions(&|of| !self.is_covered(of)),
+            places: places.len(),
+            covered: count(Told::Open),
+            excluded: count(Told::Excluded),
+            open_positions_m: positions(Told::Open),
+            uncovered_positions_m: positions(Told::Uncovered),
             causes,
         })
     }

@@ -3,6 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `bank.rs`, `reach.rs` | where an inclusion lies by a bank, and how deep one can be found |
+//! | `coverage.rs` | what a sweep has told of each place |
 //! | `explanation.rs` | a record beside what explains it |
 //! | `calibration.rs` | a force–depth curve beside its fit |
 //! | `panel.rs` | what a chart is made of |
@@ -11,6 +12,7 @@
 
 mod bank;
 mod calibration;
+mod coverage;
 mod explanation;
 mod key;
 mod lines;
@@ -20,6 +22,7 @@ pub mod style;
 
 pub use bank::place_figure;
 pub use calibration::calibration_figure;
+pub use coverage::coverage_figure;
 pub use explanation::{answer_in_words, explanation_figure, record_panel};
 pub use lines::{chart, round_range};
 pub use panel::{Cells, Line, Panel, PanelKind};

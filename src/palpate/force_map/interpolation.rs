@@ -76,10 +76,15 @@ impl Stencil {
         }
     }
 
-    /// The rows that stand for a `depth` (m), within [`SAME_POSITION`] of one that row alone. `None` beyond the ends.
+    /// The rows that stand for a `depth` (m), within [`SAME_POSITION`] of one that row alone, and none above a row at 0. `None` beyond the
+    /// ends.
     ///
     /// Implements: MAP-090.
     pub fn of_rows(depths: &[f64], depth: f64) -> Option<Stencil> {
+        if depths.first() == Some(&0.0) && depth < 0.0 {
+            let (first, weights) = (0, Vec::new());
+            return Some(Stencil { first, weights });
+        }
         let Place { entries, .. } = Place::within(depths, depth)?;
         if entries[0] == entries[1] {
             let (first, weights) = (entries[0], vec![1.0]);

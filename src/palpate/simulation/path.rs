@@ -114,5 +114,5 @@ fn few(samples: f64) -> Result<(), Refusal> {
     let found = format!("a record of {samples} samples");
     let refusal = Refusal::state(found, "take at most 1,000,000, by a lower rate");
     // NaN is no number of samples.
-    refusal.when(!(samples >= 1.0 && samples <= MOST))
+    refusal.when(!(1.0..=MOST).contains(&samples))
 }

@@ -70,7 +70,7 @@ use crate::csv::{Column, Layout, Rows};
 use crate::decimal::mm;
 use crate::detect::DetectError;
 use crate::force::Force;
-use crate::force_map::{ForceTable, SAME_POSITION};
+use crate::force_map::{ForceTable, SAME_POSITION, Stencil};
 use crate::refusal::Refusal;
 use crate::stats::error::check_samples;
 use crate::text::extremes;
@@ -512,7 +512,7 @@ impl Record {
     fn is_over(&self, map: &ForceTable, at: usize) -> bool {
         let depth = self.depths.get(at);
         is_within(map.laterals(), self.positions[at])
-            && depth.is_none_or(|depth| is_within(map.depths(), *depth))
+            && depth.is_none_or(|depth| Stencil::of_rows(map.depths(), *depth).is_some())
     }
 
     /// The poses of `map` in words.

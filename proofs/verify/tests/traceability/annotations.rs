@@ -291,6 +291,7 @@ fn comment<'a>(line: &'a str, ending: &str) -> Option<&'a str> {
     let line = line.trim();
     let said = match ending {
         "rs" | "js" => line.strip_prefix("//")?.trim_start_matches(['/', '!']),
+        "c" => line.strip_prefix("/*")?.trim_end_matches("*/"),
         "md" => line.strip_prefix("<!--")?.trim_end_matches("-->"),
         "py" => line.trim_matches(['#', '"']),
         _ => line.strip_prefix('#')?,

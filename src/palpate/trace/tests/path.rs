@@ -188,7 +188,7 @@ fn passes_end_where_the_probe_turns() {
     // All are of one place.
     assert_eq!(passes[1].place(), Some([-4e-3, 4e-3]));
     let pass = read(EXAMPLE).unwrap();
-    assert_eq!(pass.passes(), [pass.clone()]);
+    assert_eq!(pass.passes(), std::slice::from_ref(&pass));
 }
 
 // Verifies: TRC-084.
@@ -351,4 +351,19 @@ fn errors_of_the_depths_are_noise_of_both_channels() {
     );
     assert!(path(0.0, |_| 0.0).with_depth_sd(-1.0).is_err());
     assert!(judge::recorded(|_| [0.0; 2]).with_depth_sd(1e-4).is_err());
+}
+
+// Verifies: MAP-090, TRC-082.
+#[test]
+fn above_the_gel_there_is_no_force() {
+    let table = table_of(&[0.0, 1e-3, 2e-3], &[0.0, 1e-3], |d, x| [x, 1e3 * d + x]);
+    let record = along(&[0.0, 0.5, 1.0, 1.0], &[-2.0, -0.001, 0.0, 1.0]);
+    let found = record.expected(&table, 0.0).unwrap();
+    assert_eq!(found.normal, [0.0, 0.0, 1e-3, 1.001]);
+    assert_eq!(found.lateral, [0.0, 0.0, 1e-3, 1e-3]);
+    let (kept, note) = record.trimmed(&table).unwrap();
+    assert!(kept.positions().len() == 4 && note.is_none());
+    // A map that begins in the gel says nothing of what is above it.
+    let deep = table_of(&[1e-3, 2e-3], &[0.0, 1e-3], |d, _| [0.0, d]);
+    assert!(along(&[0.0], &[-1.0]).expected(&deep, 0.0).is_err());
 }
