@@ -9,7 +9,7 @@ use palpate::detect::{self, DetectError, theta_of_record};
 use palpate::force::Force;
 use palpate::stats::random::Generator;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyType};
+use pyo3::types::{PyDict, PyTuple, PyType};
 use rayon::prelude::*;
 
 use crate::batch;
@@ -185,12 +185,10 @@ impl MatchedFilter {
         Ok(found.map_err(|error| of_record(None, error))?.into())
     }
 
-    fn __reduce__<'py>(
-        slf: &Bound<'py, Self>,
-    ) -> PyResult<(Bound<'py, PyType>, (Bound<'py, PyAny>, [f64; 2]))> {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
         let MatchedFilter { template, noise_sd } = slf.get();
         let template = array(slf.py(), &[2, template.len() / 2], template.clone())?;
-        Ok((slf.get_type(), (template, noise_sd.into_array())))
+        (slf.get_type(), (template, noise_sd.into_array())).into_pyobject(slf.py())
     }
 
     fn __repr__(&self) -> PyResult<String> {
