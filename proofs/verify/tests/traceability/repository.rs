@@ -15,7 +15,9 @@ pub struct Repository {
 }
 
 /// Endings of the files in which annotations are looked for; scripts such as `tests/same_bits/run` have none.
-const ENDINGS: [&str; 10] = ["", "c", "g", "js", "md", "py", "rs", "rules", "sbatch", "toml"];
+const ENDINGS: [&str; 10] = [
+    "", "c", "g", "js", "md", "py", "rs", "rules", "sbatch", "toml",
+];
 
 /// What follows the last dot of the file's name; empty without one.
 pub fn ending(path: &str) -> &str {
