@@ -64,7 +64,9 @@ impl Watcher {
             false => si(name, value, -3),
         };
         let x = metres("position_mm", position_mm)?;
-        let depth = depth_mm.map(|depth| metres("depth_mm", depth)).transpose()?;
+        let depth = depth_mm
+            .map(|depth| metres("depth_mm", depth))
+            .transpose()?;
         let pushed = (self.watcher).push_at(x, depth, lateral_force_n, normal_force_n);
         let answer = pushed.and_then(|()| self.watcher.answer());
         python(py, &answer.map_err(refused)?)
