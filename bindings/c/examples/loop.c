@@ -1,5 +1,6 @@
 /* Plays a force table at 1 kHz: a hand presses to 4 mm and comes back, twice a second. The device is simulated here; on a real
    one `receive` reads a position report and `send` writes a force report. */
+#define _POSIX_C_SOURCE 200809L
 #include <palpate.h>
 
 #include <math.h>

@@ -18,8 +18,8 @@ use rayon::prelude::*;
 
 use crate::classes::{ForceMap, Phantom};
 use crate::convert::{
-    Any, Names, Records, array, doubt_metres, floats, html, in_unit, lengths, list, pair, python,
-    refused, remade, si, tell,
+    Any, Names, Records, array, floats, html, in_unit, lengths, list, pair, python, refused,
+    remade, si, tell,
 };
 use crate::map::axes;
 
