@@ -6,7 +6,7 @@ use palpate_asserts::assert_has;
 const SHAKEN: &str = "--depths-mm 1,2 --from-mm -3 --to-mm 3 --hand 0.05,5,500 --tremor-mm 0.05 --relaxation 0.2,1 \
     --friction 0.2 --noise-sd-n 0.1 --correlation 0.5 --offset-sd-n 0.1 --drift-sd-n 0.1 --resolution-n 0.01 --depth-noise-mm 0.01";
 
-// Verifies: CLI-230, CLI-231, SIM-003.
+// Verifies: CLI-230, CLI-231, CLI-232, SIM-003.
 #[test]
 fn a_record_is_the_same_alone_and_among_others_from_a_phantom_and_from_its_map() {
     let place = Place::new("simulate_command");
