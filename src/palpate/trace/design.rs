@@ -387,7 +387,13 @@ pub(crate) fn slope(
     if last == 0 {
         return Ok(None);
     }
-    let beside = |way: f64| record.moved(|depth| (depth + way).clamp(rows[0], rows[last]));
+    // Above the gel there is no force, and so no end of the map.
+    let first = if rows[0] == 0.0 {
+        f64::NEG_INFINITY
+    } else {
+        rows[0]
+    };
+    let beside = |way: f64| record.moved(|depth| (depth + way).clamp(first, rows[last]));
     let [shallow, deep] = [-HALF_STEP, HALF_STEP].map(beside);
     let ways = deep
         .depths()

@@ -199,10 +199,11 @@ fn the_slope_is_that_of_each_depth() {
     });
     let record = along(&[0.5, 0.5, 0.5, 0.5], &[0.0, 0.98, 3.0, 4.0]);
     let found = slope(&record, &table, f64::NAN, expected).unwrap().unwrap();
-    // ∂F_n/∂d is 2d; at the ends, over 0.05 mm on one side, 2d ± 0.05, N/mm.
-    for (at, right) in [0.05, 1.96, 6.0, 7.95].into_iter().enumerate() {
-        assert_near(1e-3 * found[4 + at], right, 1e-10);
-        assert_near(1e-3 * found[at], 1.0, 1e-10);
+    // ∂F_n/∂d is 2d, N/mm; where it touches, half of the 2 · 0.025 below; at the last row, over 0.05 mm on one side, 2d − 0.05.
+    let expected_slopes = [[0.5, 0.025], [1.0, 1.96], [1.0, 6.0], [1.0, 7.95]];
+    for (at, [lateral, normal]) in expected_slopes.into_iter().enumerate() {
+        assert_near(1e-3 * found[4 + at], normal, 1e-10);
+        assert_near(1e-3 * found[at], lateral, 1e-10);
     }
     let one = table_of(&[2e-3], &[0.0, 1e-3], |_, _| [0.0, 1.0]);
     let at_row = along(&[0.5], &[2.0]);
@@ -363,6 +364,11 @@ fn above_the_gel_there_is_no_force() {
     assert_eq!(found.lateral, [0.0, 0.0, 1e-3, 1e-3]);
     let (kept, note) = record.trimmed(&table).unwrap();
     assert!(kept.positions().len() == 4 && note.is_none());
+    let slope = slope(&along(&[0.0, 0.5], &[-2.0, 1.5]), &table, 0.0, expected);
+    let slope = slope.unwrap().unwrap();
+    assert_eq!(slope[2], 0.0);
+    // N/m of the normal force: 1e3.
+    assert_near(slope[3], 1e3, 1e-9);
     // A map that begins in the gel says nothing of what is above it.
     let deep = table_of(&[1e-3, 2e-3], &[0.0, 1e-3], |d, _| [0.0, d]);
     assert!(along(&[0.0], &[-1.0]).expected(&deep, 0.0).is_err());
