@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::comparison::{self, Comparison};
 use super::inputs;
-use super::maps::{MapFindings, ReferenceFindings, gamma, of_map, of_reference};
+use super::maps::{MapFindings, ReferenceFindings, gamma, of_maps, of_reference};
 use super::people::bridge_to;
 use super::text::{millimetres, name_of_map};
 use super::theories::{self, TheoryFindings};
@@ -71,9 +71,7 @@ pub fn findings(run: &Run) -> Result<Findings, Refusal> {
         return Err(Refusal::state(found, ""));
     }
     let (reference, settings) = (&run.reference, &run.settings);
-    let judged = run.maps.iter();
-    let judged = judged.map(|map| of_map(reference, settings, map, probe_depth));
-    let maps = judged.collect::<Result<Vec<_>, _>>()?;
+    let maps = of_maps(reference, settings, &run.maps, probe_depth)?;
     let reference = of_reference(&run.reference, probe_depth)?;
     let is_paper_reference = run.reference.phantom().and_then(paper::name_of) == Some("none");
     let is_comparable = is_quoted && is_paper_reference;

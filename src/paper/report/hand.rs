@@ -24,32 +24,33 @@ pub struct GammaOfHand {
     pub mean_depth_m: f64,
 }
 
-impl GammaOfHand {
-    /// In noise of `noise_sd` (N), with as many samples as the maps have positions; none where a map does not reach as far as the hand.
-    ///
-    /// Implements: REP-017.
-    pub(super) fn of(
-        reference: &ForceMap,
-        map: &ForceMap,
-        noise_sd: f64,
-        depth: f64,
-    ) -> Option<GammaOfHand> {
+/// A path over the reference, by a stage that follows it and by a hand that tracks it.
+pub(super) struct HandPath<'a> {
+    reference: &'a ForceMap,
+    path: Path,
+    followed: SimulatedRecord,
+    tracked: SimulatedRecord,
+}
+
+impl<'a> HandPath<'a> {
+    /// The path at a commanded depth (m), with as many samples as the map has positions; none where it does not reach as far as the hand.
+    pub fn over(reference: &'a ForceMap, depth: f64) -> Option<HandPath<'a>> {
         let laterals = reference.table().laterals();
         let (first, last) = (laterals[0] + MARGIN, laterals[laterals.len() - 1] - MARGIN);
         let rate = (laterals.len() - 1) as f64 * SPEED / (last - first);
         let path = Path::passes(&[depth], [first, last], SPEED, rate).ok()?;
-        let record = |gel: &ForceMap, hand: Option<Hand>| -> Option<SimulatedRecord> {
-            let simulation = Simulation {
-                gel: gel.table(),
-                path: &path,
-                motion: Motion { hand, tremor: None },
-                relaxation: None,
-                friction: 0.0,
-                sensor: Sensor::default(),
-                seed: 0,
-            };
-            simulation.record(0).ok()
-        };
+        Some(HandPath {
+            followed: record(reference, &path, None)?,
+            tracked: record(reference, &path, Some(Hand::default()))?,
+            reference,
+            path,
+        })
+    }
+
+    /// γ of a map in noise of `noise_sd` (N); none where the map does not reach as far as the hand.
+    ///
+    /// Implements: REP-017.
+    pub fn gamma(&self, map: &ForceMap, noise_sd: f64) -> Option<GammaOfHand> {
         let between = |without: &Force<Vec<f64>>, with: &Force<Vec<f64>>| -> Option<f64> {
             let signal = with.as_ref().zip(without.as_ref());
             let Force { lateral, normal } = signal.map(|(with, without)| -> Vec<f64> {
@@ -58,15 +59,30 @@ impl GammaOfHand {
             });
             gamma(&lateral, &normal, noise_sd).ok()
         };
-        let hand = Some(Hand::default());
-        let [without, with] = [record(reference, None)?, record(map, None)?];
-        let [light, heavy] = [record(reference, hand)?, record(map, hand)?];
-        let same_poses = (reference.table()).path(&heavy.depths, &heavy.positions);
+        let followed = record(map, &self.path, None)?;
+        let tracked = record(map, &self.path, Some(Hand::default()))?;
+        let same_poses = self.reference.table();
+        let same_poses = same_poses.path(&tracked.depths, &tracked.positions);
+        let depths = &self.tracked.depths;
         Some(GammaOfHand {
-            followed: between(&without.forces, &with.forces)?,
-            tracked: between(&same_poses.ok()?, &heavy.forces)?,
-            felt: between(&light.forces, &heavy.forces)?,
-            mean_depth_m: light.depths.iter().sum::<f64>() / light.depths.len() as f64,
+            followed: between(&self.followed.forces, &followed.forces)?,
+            tracked: between(&same_poses.ok()?, &tracked.forces)?,
+            felt: between(&self.tracked.forces, &tracked.forces)?,
+            mean_depth_m: depths.iter().sum::<f64>() / depths.len() as f64,
         })
     }
+}
+
+/// The record of a path by an exact sensor; none where the gel's map does not reach as far.
+fn record(gel: &ForceMap, path: &Path, hand: Option<Hand>) -> Option<SimulatedRecord> {
+    let simulation = Simulation {
+        gel: gel.table(),
+        path,
+        motion: Motion { hand, tremor: None },
+        relaxation: None,
+        friction: 0.0,
+        sensor: Sensor::default(),
+        seed: 0,
+    };
+    simulation.record(0).ok()
 }

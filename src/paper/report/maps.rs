@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::hand::GammaOfHand;
+use super::hand::{GammaOfHand, HandPath};
 use super::nuisances::GammaLeft;
 use super::quality::{Quality, warnings};
 use super::text::name_of_map;
@@ -158,11 +158,23 @@ pub(super) fn signal(
 }
 
 /// Implements: REP-012.
-pub(super) fn of_map(
+pub(super) fn of_maps(
+    reference: &ForceMap,
+    settings: &Settings,
+    maps: &[ForceMap],
+    depth: f64,
+) -> Result<Vec<MapFindings>, Refusal> {
+    let hand = HandPath::over(reference, depth);
+    let of = |map| of_map(reference, settings, map, depth, hand.as_ref());
+    maps.iter().map(of).collect()
+}
+
+fn of_map(
     reference: &ForceMap,
     settings: &Settings,
     map: &ForceMap,
     depth: f64,
+    hand: Option<&HandPath<'_>>,
 ) -> Result<MapFindings, Refusal> {
     let signal = signal(reference, map, depth)?;
     let signal = signal.as_deref();
@@ -184,7 +196,7 @@ pub(super) fn of_map(
         peak_lateral: peak(signal.lateral),
         gamma,
         gamma_left,
-        gamma_of_hand: GammaOfHand::of(reference, map, settings.noise_sd_n, depth),
+        gamma_of_hand: hand.and_then(|hand| hand.gamma(map, settings.noise_sd_n)),
         detection,
         warnings: warnings(quality.as_ref(), gamma.both),
         quality,

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::maps::{MapFindings, ReferenceFindings, of_map, of_reference, signal};
+use super::maps::{MapFindings, ReferenceFindings, of_maps, of_reference, signal};
 use super::nuisances::{BOTH, BY_DEFAULT, columns, space};
 use super::people::bridge_to;
 use super::text::name_of_map;
@@ -95,13 +95,11 @@ pub(super) fn findings(
     let of = |theory: &Theory| {
         let reference = &theory.reference;
         let (depth, _) = probe_depth(reference.table().depths());
-        let maps = theory.maps.iter();
-        let maps = maps.map(|map| of_map(reference, settings, map, depth));
         Ok(TheoryFindings {
             name: theory.name(),
             reference: of_reference(reference, depth)?,
             poisson_leverage: theory.poisson_leverage,
-            maps: maps.collect::<Result<_, Refusal>>()?,
+            maps: of_maps(reference, settings, &theory.maps, depth)?,
             explanations: explanations(theory)?,
             templates: templates(&theories[0], theory, settings)?,
         })
