@@ -81,7 +81,7 @@ impl Stencil {
     ///
     /// Implements: MAP-090.
     pub fn of_rows(depths: &[f64], depth: f64) -> Option<Stencil> {
-        if depths.first() == Some(&0.0) && depth < 0.0 {
+        if depth < *depths.first()? && depth >= shallowest(depths) {
             let (first, weights) = (0, Vec::new());
             return Some(Stencil { first, weights });
         }
@@ -101,6 +101,16 @@ impl Stencil {
             .zip(values)
             .map(|(w, value)| w * value)
             .sum()
+    }
+}
+
+/// The least depth of which rows tell the forces, m: there is none above a row at 0, where there is no force.
+///
+/// Implements: MAP-090.
+pub(crate) fn shallowest(depths: &[f64]) -> f64 {
+    match depths[0] {
+        0.0 => f64::NEG_INFINITY,
+        first => first,
     }
 }
 

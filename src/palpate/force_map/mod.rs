@@ -46,7 +46,7 @@ use serde::{Deserialize, Serialize};
 pub use certificate::{Certificate, Discretization, SmallestDet};
 pub use grid::Gridded;
 pub use interpolation::interpolate;
-pub(crate) use interpolation::{Place, Stencil};
+pub(crate) use interpolation::{Place, Stencil, shallowest};
 pub use json::{SCHEMA, SCHEMA_VERSION};
 pub use pair::Hypotheses;
 pub(crate) use pair::check_gel;

@@ -8,7 +8,7 @@ use super::{Question, Record};
 use crate::detect::DetectError;
 use crate::detect::nuisance::{DEPENDENT, Nuisances, SubspaceDetector};
 use crate::force::Force;
-use crate::force_map::{ForceTable, SAME_POSITION};
+use crate::force_map::{ForceTable, SAME_POSITION, shallowest};
 use crate::refusal::Refusal;
 use crate::stats::error::check_positive;
 
@@ -387,13 +387,8 @@ pub(crate) fn slope(
     if last == 0 {
         return Ok(None);
     }
-    // Above the gel there is no force, and so no end of the map.
-    let first = if rows[0] == 0.0 {
-        f64::NEG_INFINITY
-    } else {
-        rows[0]
-    };
-    let beside = |way: f64| record.moved(|depth| (depth + way).clamp(first, rows[last]));
+    let least = shallowest(rows);
+    let beside = |way: f64| record.moved(|depth| (depth + way).clamp(least, rows[last]));
     let [shallow, deep] = [-HALF_STEP, HALF_STEP].map(beside);
     let ways = deep
         .depths()
