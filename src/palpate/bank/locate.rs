@@ -12,7 +12,7 @@ use crate::force::Force;
 use crate::force_map::ForceMap;
 use crate::refusal::Refusal;
 use crate::text::extremes;
-use crate::trace::contact::{RADIUS, is_narrow};
+use crate::trace::contact::{is_narrow, radius};
 use crate::trace::design::{Design, difference, expected, squares, whitened};
 use crate::trace::{Cause, Criterion, Fit, Question, Record, refused};
 
@@ -111,8 +111,7 @@ impl BankSearch<'_> {
             let noise_sd = fit.noise_sd.map(|sd| sd.unwrap_or(1.0));
             let detector = self.detector(&white, &signals, noise_sd, level)?;
             let mut found = self.judge(&detector, &mut white, fit)?;
-            let radius = self.bank.reference().phantom();
-            let radius = radius.map_or(RADIUS, |of| of.probe().radius);
+            let radius = radius(self.bank.reference());
             let [first, last] = extremes(record.positions().iter().copied()).unwrap_or_default();
             if is_narrow(last - first, radius) {
                 found.decision = None;

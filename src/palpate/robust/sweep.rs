@@ -10,7 +10,7 @@ use super::{RobustQuestion, RobustSweep, channels, expected};
 use crate::force::Force;
 use crate::force_map::{ForceMap, ForceTable};
 use crate::refusal::Refusal;
-use crate::trace::contact::{RADIUS, in_air, is_narrow, level};
+use crate::trace::contact::{RADIUS, in_air, is_narrow, level, radius};
 use crate::trace::design::{difference, slope};
 use crate::trace::{Cause, Record};
 
@@ -47,7 +47,7 @@ impl RobustQuestion<'_> {
     ///
     /// Implements: ROB-083, ROB-084.
     pub fn passes(&self, record: &Record, reference: &ForceMap) -> (Vec<Record>, usize) {
-        let radius = reference.phantom().map_or(RADIUS, |of| of.probe().radius);
+        let radius = radius(reference);
         let width = |pass: &Record| {
             let x = pass.positions();
             x[x.len() - 1] - x[0]

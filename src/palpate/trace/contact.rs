@@ -1,6 +1,7 @@
 //! Whether a record is of a probe that touches the gel.
 
 use super::fit::Cause;
+use crate::force_map::ForceMap;
 
 /// A record that touches has such a level at least.
 ///
@@ -15,6 +16,12 @@ const SIGN: f64 = -0.4;
 
 /// The radius of the probe where no phantom says it, m: the paper's.
 pub const RADIUS: f64 = 6.5e-3;
+
+/// The radius of the probe over this map, m.
+pub fn radius(map: &ForceMap) -> f64 {
+    map.phantom().map_or(RADIUS, |of| of.probe().radius)
+}
+
 /// A sweep over less than this share of the radius of the probe shows no inclusion.
 const NARROW: f64 = 0.46;
 
