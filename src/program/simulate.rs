@@ -13,7 +13,6 @@ use super::numbers::{
 use super::output::{make_folder, print, write};
 use super::solve::phantom;
 use palpate::fem::{Contact, MESH_SIZE, Model};
-use palpate::force::Force;
 use palpate::force_map::ForceMap;
 use palpate::simulation::{Hand, Motion, Path, Sensor, Simulation, Tremor};
 
@@ -215,7 +214,7 @@ impl MotionArguments {
 impl SensorArguments {
     fn sensor(&self) -> Sensor {
         Sensor {
-            noise_sd: self.noise_sd.get().unwrap_or(Force::new(0.0, 0.0)),
+            noise_sd: self.noise_sd.get().unwrap_or_default(),
             correlation: self.correlation,
             offset_sd: self.offset_sd_n,
             drift_sd: self.drift_sd_n,

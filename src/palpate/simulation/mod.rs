@@ -42,8 +42,8 @@ pub struct Simulation<'a> {
     pub seed: u64,
 }
 
-/// A force sensor, and an encoder of the depth.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A force sensor, and an encoder of the depth; by default without errors.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sensor {
     /// Standard deviation of the noise of a sample, N.
     pub noise_sd: Force<f64>,
@@ -57,20 +57,6 @@ pub struct Sensor {
     pub resolution: f64,
     /// Standard deviation of the error of each depth, m.
     pub depth_sd: f64,
-}
-
-/// A sensor without errors.
-impl Default for Sensor {
-    fn default() -> Sensor {
-        Sensor {
-            noise_sd: Force::new(0.0, 0.0),
-            correlation: 0.0,
-            offset_sd: 0.0,
-            drift_sd: 0.0,
-            resolution: 0.0,
-            depth_sd: 0.0,
-        }
-    }
 }
 
 /// A simulated record.
@@ -112,11 +98,12 @@ impl Simulation<'_> {
                 None => forces,
             }
         });
-        for (sample, force) in lateral.iter_mut().enumerate() {
-            let [before, behind] = [sample.max(1) - 1, sample.max(1)].map(|at| places.get(at));
-            let way = before.zip(behind).map_or(0.0, |(a, b)| b[0] - a[0]);
+        // The first sample goes the way of the second.
+        let steps: Vec<f64> = places.windows(2).map(|of| of[1][0] - of[0][0]).collect();
+        let ways = steps.first().into_iter().chain(&steps);
+        for ((force, normal), &way) in lateral.iter_mut().zip(&normal).zip(ways) {
             if way != 0.0 {
-                *force -= self.friction * normal[sample] * way.signum();
+                *force -= self.friction * normal * way.signum();
             }
         }
         let noise = |index| self.sensor.depth_sd * generator.normal(DEPTH, index);
