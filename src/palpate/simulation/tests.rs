@@ -373,6 +373,17 @@ fn a_sensor_has_the_noise_offset_drift_and_steps_that_are_asked() {
             assert_near(found[2], 0.5 * (found[0] + found[4]), 1e-12);
         }
     }
+    // A drift alone begins at 0.
+    let alone = Simulation {
+        sensor: Sensor {
+            offset_sd: 0.0,
+            ..sensor
+        },
+        ..drifting
+    };
+    let found = alone.record(1).unwrap().forces;
+    assert_eq!(found.normal[0], calm.forces.normal[0]);
+    assert_ne!(found.normal[4], calm.forces.normal[4]);
     // Five standard errors of 800.
     assert_near(sd(&offsets) / 0.3, 1.0, 5.0 / 40.0);
     assert_near(sd(&drifts) / 0.1, 1.0, 5.0 / 40.0);
