@@ -1,8 +1,7 @@
 //! A device over a pipe: reports of the vendor profile, one after the other, from and to a bridge in any language.
 
-use std::io::{Error, ErrorKind, Read, Write};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
-use std::thread::Builder;
+use std::io::Write;
+use std::ops::Range;
 use std::time::{Duration, Instant};
 
 use super::device::pass_over;
@@ -10,55 +9,65 @@ use super::{
     Capabilities, Control, DeviceError, DeviceState, ForceReport, HapticDevice, InvalidReport,
     PositionReport, Received,
 };
+use source::{Input, Source};
+
+#[cfg_attr(unix, path = "pipe/unix.rs")]
+#[cfg_attr(not(unix), path = "pipe/thread.rs")]
+mod source;
 
 /// Reports that wait for the loop: as many as the system keeps of a HID device.
 const QUEUE: usize = 63;
 
-/// What the input brings: reports, and at last why it brings no more.
-type Brought = Result<PositionReport, DeviceError>;
+/// The bytes that a pipe holds on most systems.
+const PIPE: usize = 1 << 16;
 
 /// A device that reports through `input` and is sent its forces through `output`.
 ///
-/// Neither reading nor writing allocates. A write waits while the pipe is full.
+/// Neither reading nor writing allocates. A write waits while the pipe is full. On Unix the loop itself reads, elsewhere a thread.
 ///
 /// ```
 /// use palpate::hid::pipe::PipeDevice;
 /// use palpate::hid::simulated::PAPER;
 /// use palpate::hid::{Control, ForceReport, HapticDevice, PositionReport, Received};
+/// use std::io::Write;
 /// use std::time::Duration;
 ///
 /// let report = PositionReport { normal: -1200, sequence: 7, ..PositionReport::default() };
-/// let sent = [&PAPER.encode()[..], &report.encode()].concat();
-/// let mut device = PipeDevice::open(std::io::Cursor::new(sent), Vec::new())?;
+/// let (input, mut bridge) = std::io::pipe()?;
+/// bridge.write_all(&PAPER.encode())?;
+/// bridge.write_all(&report.encode())?;
+/// let mut device = PipeDevice::open(input, Vec::new())?;
 /// assert_eq!(device.capabilities()?, PAPER);
-/// # Ok::<(), palpate::hid::DeviceError>(())
+/// assert_eq!(device.read(Duration::from_secs(1))?, Received::Report(report));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// Implements: HID-110.
 pub struct PipeDevice<R, W> {
     capabilities: Capabilities,
-    /// The input until the device is enabled, and where its reports will go.
-    unread: Option<(R, SyncSender<Brought>)>,
-    reports: Receiver<Brought>,
+    input: Reports<R>,
     output: W,
     opened: Instant,
 }
 
-impl<R: Read, W: Write> PipeDevice<R, W> {
+impl<R: Input, W: Write> PipeDevice<R, W> {
     /// Waits for the bridge to say what the device is.
     ///
     /// # Errors
     /// What the input holds instead of feature report 3.
     ///
     /// Implements: HID-110, HID-112.
-    pub fn open(mut input: R, output: W) -> Result<PipeDevice<R, W>, DeviceError> {
-        let bytes = report::<{ Capabilities::LENGTH }>(&mut input, Capabilities::NUMBER)?;
-        let capabilities = Capabilities::decode(&bytes).map_err(invalid)?;
-        let (sender, reports) = sync_channel(QUEUE);
+    pub fn open(input: R, output: W) -> Result<PipeDevice<R, W>, DeviceError> {
+        let mut input = Reports::of(input);
+        let bytes = loop {
+            let next = input.next::<{ Capabilities::LENGTH }>(Capabilities::NUMBER, None)?;
+            if let Some(bytes) = next {
+                break bytes;
+            }
+        };
         Ok(PipeDevice {
-            capabilities,
-            unread: Some((input, sender)),
-            reports,
+            capabilities: Capabilities::decode(&bytes).map_err(invalid)?,
+            input,
             output,
             opened: Instant::now(),
         })
@@ -79,77 +88,103 @@ fn invalid(problem: InvalidReport) -> DeviceError {
     DeviceError::new(DeviceState::There, format!("pipe: read: {problem}"))
 }
 
-/// The next report, of this length with its number.
-///
-/// Implements: HID-112.
-fn report<const LENGTH: usize>(
-    input: &mut impl Read,
-    expected: u8,
-) -> Result<[u8; LENGTH], DeviceError> {
-    let failed = |ended: &str, error: Error| match error.kind() {
-        ErrorKind::UnexpectedEof => gone(format!("pipe: read: the input ended {ended}")),
-        _ => gone(format!("pipe: read: {error}")),
-    };
-    let mut bytes = [0; LENGTH];
-    let (first, rest) = bytes.split_at_mut(1);
-    let read = input.read_exact(first);
-    read.map_err(|error| failed("where a report must begin", error))?;
-    let found = first[0];
-    if found != expected {
-        return Err(invalid(InvalidReport::Number { found, expected }));
-    }
-    let read = input.read_exact(rest);
-    read.map_err(|error| failed("within a report", error))?;
-    Ok(bytes)
+/// The reports in the bytes of an input.
+struct Reports<R> {
+    source: Source<R>,
+    /// Room for all that a pipe holds.
+    bytes: Box<[u8]>,
+    /// Where the bytes are that have come and were not taken.
+    untaken: Range<usize>,
 }
 
-/// Passes on the reports of `input` until it ends or nobody waits for them any more.
-///
-/// Implements: HID-111, HID-112.
-fn pass_on(mut input: impl Read, reports: &SyncSender<Brought>) {
-    loop {
-        let bytes = report::<{ PositionReport::LENGTH }>(&mut input, PositionReport::NUMBER);
-        let brought = bytes.and_then(|bytes| PositionReport::decode(&bytes).map_err(invalid));
-        if brought.is_err() {
-            // If nobody waits for it, nobody needs it.
-            let _ = reports.send(brought);
-            return;
+impl<R: Input> Reports<R> {
+    fn of(input: R) -> Reports<R> {
+        Reports {
+            source: Source::new(input),
+            bytes: vec![0; PIPE].into(),
+            untaken: 0..0,
         }
-        if let Err(TrySendError::Disconnected(_)) = reports.try_send(brought) {
-            return;
+    }
+
+    /// The next report, of this length with its number; `None` if it does not come whole within `timeout`.
+    ///
+    /// Implements: HID-112.
+    fn next<const LENGTH: usize>(
+        &mut self,
+        expected: u8,
+        timeout: Option<Duration>,
+    ) -> Result<Option<[u8; LENGTH]>, DeviceError> {
+        let began = Instant::now();
+        loop {
+            let untaken = &self.bytes[self.untaken.clone()];
+            if let Some(&found) = untaken.first().filter(|&&found| found != expected) {
+                return Err(invalid(InvalidReport::Number { found, expected }));
+            }
+            if let Some(report) = untaken.first_chunk() {
+                self.untaken.start += LENGTH;
+                return Ok(Some(*report));
+            }
+            let left = timeout.map(|time| time.saturating_sub(began.elapsed()));
+            if !self.fill(left)? && left == Some(Duration::ZERO) {
+                return Ok(None);
+            }
+        }
+    }
+
+    /// Reads what has come, and waits for it if nothing has; whether something came. Leaves out all positions but the newest.
+    ///
+    /// Implements: HID-111, HID-112.
+    fn fill(&mut self, timeout: Option<Duration>) -> Result<bool, DeviceError> {
+        self.bytes.copy_within(self.untaken.clone(), 0);
+        self.untaken = 0..self.untaken.len();
+        let read = self
+            .source
+            .read(&mut self.bytes[self.untaken.end..], timeout);
+        match read.map_err(|error| gone(format!("pipe: read: {error}")))? {
+            None => Ok(false),
+            Some(0) if self.untaken.is_empty() => Err(gone(
+                "pipe: read: the input ended where a report must begin",
+            )),
+            Some(0) => Err(gone("pipe: read: the input ended within a report")),
+            Some(count) => {
+                self.untaken.end += count;
+                if self.bytes[0] == PositionReport::NUMBER {
+                    let whole = self.untaken.len() / PositionReport::LENGTH;
+                    self.untaken.start = whole.saturating_sub(QUEUE) * PositionReport::LENGTH;
+                }
+                Ok(true)
+            }
         }
     }
 }
 
-impl<R: Read + Send + 'static, W: Write> HapticDevice for PipeDevice<R, W> {
+impl<R: Input, W: Write> HapticDevice for PipeDevice<R, W> {
     fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
         Ok(self.capabilities)
     }
 
     fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
-        match self.reports.recv_timeout(timeout) {
-            Ok(brought) => brought.map(Received::Report),
-            Err(RecvTimeoutError::Timeout) => Ok(Received::Nothing),
-            Err(RecvTimeoutError::Disconnected) => Err(gone("pipe: read: the input has ended")),
-        }
+        let Some(bytes) = self
+            .input
+            .next::<{ PositionReport::LENGTH }>(PositionReport::NUMBER, Some(timeout))?
+        else {
+            return Ok(Received::Nothing);
+        };
+        PositionReport::decode(&bytes)
+            .map(Received::Report)
+            .map_err(invalid)
     }
 
     fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
         self.send(&report.encode())
     }
 
-    /// Enabling begins to read, in a thread that has the priority of the caller's where the system passes it on (Linux, macOS).
     fn control(&mut self, control: Control) -> Result<(), DeviceError> {
         self.send(&control.encode())?;
-        if control != Control::Enable {
-            return Ok(());
+        match control {
+            Control::Enable => pass_over(self, 2 * self.capabilities.period()),
+            _ => Ok(()),
         }
-        if let Some((input, reports)) = self.unread.take() {
-            let reader = Builder::new().spawn(move || pass_on(input, &reports));
-            reader.map_err(|error| gone(format!("pipe: read: {error}")))?;
-        }
-        let time = 2 * self.capabilities.period();
-        pass_over(self, time)
     }
 
     fn now(&self) -> Duration {

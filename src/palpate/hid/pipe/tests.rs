@@ -1,6 +1,6 @@
-use std::io::{Cursor, PipeReader, PipeWriter, pipe};
+use std::io::{ErrorKind, PipeReader, PipeWriter, Read, pipe};
 use std::sync::mpsc::channel;
-use std::thread::{scope, spawn};
+use std::thread::spawn;
 
 use super::*;
 use crate::hid::simulated::PAPER;
@@ -159,7 +159,12 @@ impl Write for Noting {
 #[test]
 fn an_input_that_ends_or_is_none_of_a_bridge_stops_the_device() {
     let (about, report) = (PAPER.encode(), position(1).encode());
-    let opened = |bytes: &[u8]| PipeDevice::open(Cursor::new(bytes.to_vec()), Vec::new()).err();
+    let input = |bytes: &[u8]| {
+        let (input, mut to) = pipe().unwrap();
+        to.write_all(bytes).unwrap();
+        input
+    };
+    let opened = |bytes| PipeDevice::open(input(bytes), Vec::new()).err();
     for (bytes, message) in [
         (
             &about[..0],
@@ -187,9 +192,9 @@ fn an_input_that_ends_or_is_none_of_a_bridge_stops_the_device() {
         (&about[..], "pipe: read: report number 3, which must be 1"),
         (&[0; 20][..], "pipe: read: report number 0, which must be 1"),
     ] {
-        let input = [&about[..], &report, &report, bytes].concat();
+        let input = input(&[&about[..], &report, &report, bytes].concat());
         let (sender, sent) = channel();
-        let device = PipeDevice::open(Cursor::new(input), Noting(sender)).unwrap();
+        let device = PipeDevice::open(input, Noting(sender)).unwrap();
         let End::Device(error) = begin(device).run(|_, _| true) else {
             panic!("{bytes:?}")
         };
@@ -213,28 +218,26 @@ fn an_output_that_nobody_reads_ends_the_session() {
     assert!(end.starts_with("stopped: pipe: write: "), "{end}");
 }
 
-/// The end of an input, which tells that it was reached.
-struct Reached(std::sync::mpsc::Sender<()>);
-
-impl Read for Reached {
-    fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
-        self.0.send(()).unwrap();
-        Ok(0)
-    }
-}
-
+// Elsewhere a thread reads, when it may.
 // Verifies: HID-111.
+#[cfg(unix)]
 #[test]
-fn the_oldest_reports_are_kept_when_nobody_reads_them() {
-    let sent: Vec<u8> = (1..=200)
+fn the_newest_reports_are_taken_after_a_stall() {
+    let (input, mut to) = pipe().unwrap();
+    to.write_all(&PAPER.encode()).unwrap();
+    let mut device = PipeDevice::open(input, Vec::new()).unwrap();
+    // With half a report behind them, which is taken when it is whole.
+    let sent: Vec<u8> = (1..=201)
         .flat_map(|sequence| position(sequence).encode())
         .collect();
-    let ((reached, all_sent), (sender, reports)) = (channel(), sync_channel(QUEUE));
-    scope(|scope| {
-        scope.spawn(move || pass_on(Cursor::new(sent).chain(Reached(reached)), &sender));
-        all_sent.recv().unwrap();
-        let kept = reports.iter().map_while(Result::ok);
-        let kept: Vec<u16> = kept.map(|report| report.sequence).collect();
-        assert_eq!(kept, (1..=63).collect::<Vec<_>>());
-    });
+    let (whole, rest) = sent.split_at(sent.len() - 5);
+    to.write_all(whole).unwrap();
+    let mut read = || match device.read(Duration::ZERO).unwrap() {
+        Received::Report(report) => Some(report.sequence),
+        _ => None,
+    };
+    let taken: Vec<u16> = std::iter::from_fn(&mut read).collect();
+    assert_eq!(taken, (200 - 62..=200).collect::<Vec<_>>());
+    to.write_all(rest).unwrap();
+    assert_eq!(read(), Some(201));
 }
