@@ -190,3 +190,45 @@ fn each_class_of_disturbance_leaves_a_part_of_gamma() {
     assert_has(&table, "the surface is domed or dished");
     assert!(reach(noise).get("beside_classes").is_none());
 }
+
+// Verifies: CLI-234, BNK-082.
+#[test]
+fn along_a_path_every_pass_counts() {
+    // Two passes over the positions of the bank, at the depth of its probe, have √2 times γ.
+    let [one, two] = ["3", "3,3"].map(|depths| {
+        reach(&format!(
+            "--noise-sd-n 1 --known all --depths-mm {depths} --speed-mm-s 10 --rate-hz 10"
+        ))
+    });
+    let gamma = |of: &Value| of["largest_depths"][0]["nothing_unknown"]["gamma"][0].clone();
+    assert_near(&gamma(&two), 2f64.sqrt() * gamma(&one).as_f64().unwrap());
+    assert_near(&gamma(&one), gamma_of_all(0));
+    assert_eq!(
+        (&two["samples"], &two["probe_depth_m"]),
+        (&34.into(), &Value::Null)
+    );
+    let path = "time_s,position_mm,depth_mm\n0,-8,3\n1.6,8,3\n";
+    place().write("path.csv", path);
+    assert_eq!(
+        gamma(&reach("--noise-sd-n 1 --path path.csv --rate-hz 10")),
+        gamma(&one)
+    );
+    let refusal = place().fail(
+        "reach --bank bank.json --noise-sd-n 1 --depths-mm 3 --to-mm 9",
+        2,
+    );
+    assert_has(
+        &refusal,
+        "position 8.1 mm at a depth of 3.0 mm is outside the maps",
+    );
+    assert_has(&refusal, "give a path over them");
+    assert_eq!(
+        reach("--noise-sd-n 1 --classes --depths-mm 3,3 --rate-hz 20")["samples"],
+        66
+    );
+}
+
+/// γ of a map in noise of 1 N with nothing unknown.
+fn gamma_of_all(map: usize) -> f64 {
+    gamma(&bank(), map, false)
+}

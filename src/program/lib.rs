@@ -21,6 +21,7 @@ mod manual;
 pub mod numbers;
 mod oracle;
 pub mod output;
+mod path;
 mod platform;
 mod play;
 mod playback;

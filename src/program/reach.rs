@@ -10,6 +10,7 @@ use super::detect::arguments::{Known, NoiseSd};
 use super::error::refuse;
 use super::numbers::probability;
 use super::output::{Envelope, write};
+use super::path::PathArguments;
 use super::{CliError, Format};
 use palpate::bank::{Bank, BesideClass, Reach, Reached, smallest_diameters};
 use palpate::chart::reach_figure;
@@ -18,7 +19,7 @@ use palpate::force::Force;
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 use palpate::robust::{GelChanges, GelUncertainty};
-use palpate::trace::{Unknown, in_words};
+use palpate::trace::{Record, Unknown, in_words};
 
 /// Arguments of `palpate reach`.
 #[derive(Debug, Args)]
@@ -34,9 +35,11 @@ pub struct ReachArguments {
     /// Miss rate
     #[arg(long, value_name = "B", value_parser = probability, allow_hyphen_values = true, default_value = "0.05")]
     max_miss: f64,
-    /// Number of evenly spaced samples of the sweep [default: one at each lateral position of the bank]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    /// Number of evenly spaced samples of a sweep over the bank, where no path is given [default: one at each lateral position]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000), conflicts_with_all = ["depths", "path"])]
     samples: Option<u64>,
+    #[command(flatten)]
+    path: PathArguments,
     /// Quantities to take as known instead of fitting: a list of offset, drift, gain and depth, or 'all' or 'none'
     #[arg(long, value_name = "LIST", value_parser = Known::parse, default_value = "depth")]
     known: Known,
@@ -55,7 +58,8 @@ pub struct ReachArguments {
 #[derive(Debug, Serialize)]
 struct Asked {
     bank: String,
-    probe_depth_m: f64,
+    /// None along a path.
+    probe_depth_m: Option<f64>,
     noise_sd_lateral_n: f64,
     noise_sd_normal_n: f64,
     max_false_alarm: f64,
@@ -118,21 +122,20 @@ struct SmallestDiameter {
 }
 
 impl ReachArguments {
-    fn asked(&self, bank: &Bank) -> Result<Asked, CliError> {
+    fn asked(&self, bank: &Bank, sweep: &Record) -> Result<Asked, CliError> {
         let Some(noise_sd) = self.noise_sd.get() else {
             refuse!("give --noise-sd-n, or both --noise-sd-lateral-n and --noise-sd-normal-n");
         };
-        let laterals = bank.reference().table().laterals().len();
         // The variance of the noise is stated.
         let unknown = self.known.unknown.iter().copied();
         Ok(Asked {
             bank: self.bank.display().to_string(),
-            probe_depth_m: bank.depth(),
+            probe_depth_m: sweep.depths().is_none().then_some(bank.depth()),
             noise_sd_lateral_n: noise_sd.lateral,
             noise_sd_normal_n: noise_sd.normal,
             max_false_alarm: self.max_false_alarm,
             max_miss: self.max_miss,
-            samples: self.samples.map_or(laterals, |samples| samples as usize),
+            samples: sweep.positions().len(),
             unknown: unknown.filter(|&of| of != Unknown::Variance).collect(),
         })
     }
@@ -140,13 +143,17 @@ impl ReachArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-160, CLI-163.
+/// Implements: CLI-160, CLI-163, CLI-234.
 pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     let bank = Bank::read(&arguments.bank)?;
-    let asked = arguments.asked(&bank)?;
+    let sweep = match arguments.path.path()? {
+        Some(path) => path.sweep()?,
+        None => bank.sweep(arguments.samples.map(|samples| samples as usize))?,
+    };
+    let asked = arguments.asked(&bank, &sweep)?;
     let plain = Reach {
         bank: &bank,
-        samples: arguments.samples.map(|samples| samples as usize),
+        sweep: &sweep,
         noise_sd: Force::new(asked.noise_sd_lateral_n, asked.noise_sd_normal_n),
         max_false_alarm: asked.max_false_alarm,
         max_miss: asked.max_miss,
@@ -155,6 +162,13 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     let unknown = &asked.unknown;
     let beside = Reach { unknown, ..plain };
     let in_bank = |refusal: Refusal| refusal.in_file(&*asked.bank);
+    let beyond = |refusal| Refusal {
+        line: None,
+        remedy: "give a path over them".into(),
+        ..in_bank(refusal)
+    };
+    let under = (bank.reference().table(), bank.depth());
+    sweep.expected(under.0, under.1).map_err(beyond)?;
     let gamma_needed = plain.gamma()?;
     let beside_classes = match arguments.classes {
         true => beside_classes(&plain)?,
@@ -183,8 +197,11 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
 
 /// Implements: CLI-161.
 fn beside_classes(reach: &Reach<'_>) -> Result<Vec<BesideClasses>, CliError> {
-    let (reference, depth) = (reach.bank.reference(), reach.bank.depth());
-    let changes = GelChanges::new(reference, depth, &GelUncertainty::default());
+    let (reference, uncertainty) = (reach.bank.reference(), GelUncertainty::default());
+    let changes = match reach.sweep.depths() {
+        Some(_) => GelChanges::along(reference, &[reach.sweep], &uncertainty),
+        None => GelChanges::new(reference, reach.bank.depth(), &uncertainty),
+    };
     let name = reference.phantom().map_or("", Phantom::name);
     let found = reach.beside_classes(changes.map_err(CliError::fem(name))?.as_ref())?;
     let [_, _, diameters, moduli] = reach.bank.axes();

@@ -7,10 +7,9 @@ use clap::Args;
 use super::CliError;
 use super::detect::arguments::NoiseSd;
 use super::error::refuse;
-use super::numbers::{
-    at_least_0, length, length_or_zero, newtons_or_zero, position, several, share_below_1, velocity,
-};
+use super::numbers::{at_least_0, length_or_zero, newtons_or_zero, several, share_below_1};
 use super::output::{make_folder, print, write};
+use super::path::PathArguments;
 use super::solve::phantom;
 use palpate::fem::{Contact, MESH_SIZE, Model};
 use palpate::force_map::ForceMap;
@@ -44,28 +43,6 @@ pub struct SimulateArguments {
     /// New folder for the records, record-0001.csv and so on [default: a single record is printed]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-}
-
-/// Where the probe is sent.
-#[derive(Debug, Args)]
-struct PathArguments {
-    /// Depths of the probe in mm, a pass for each in turn, there and back: a list such as 1,2,3,4
-    #[arg(long = "depths-mm", value_name = "LIST", value_parser = length, value_delimiter = ',', allow_hyphen_values = true, required_unless_present = "path")]
-    depths: Vec<f64>,
-    /// Where a pass begins and ends, in mm
-    #[arg(long = "from-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "-8")]
-    from: f64,
-    #[arg(long = "to-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "8")]
-    to: f64,
-    /// Speed of a pass in mm/s
-    #[arg(long = "speed-mm-s", value_name = "V", value_parser = velocity, allow_hyphen_values = true, default_value = "10")]
-    speed: f64,
-    /// Any other path: a CSV file with time_s, position_mm and depth_mm of waypoints
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["depths", "from", "to", "speed"])]
-    path: Option<PathBuf>,
-    /// Samples per second
-    #[arg(long, value_name = "HZ", value_parser = at_least_0, allow_hyphen_values = true, default_value = "100")]
-    rate_hz: f64,
 }
 
 /// What leads the probe, and what the gel does beside its elastic force.
@@ -123,7 +100,9 @@ pub fn simulate(arguments: &SimulateArguments) -> Result<(), CliError> {
     if let Some(folder) = arguments.out.as_ref().filter(|folder| folder.exists()) {
         refuse!("{} already exists; choose another --out", folder.display());
     }
-    let path = arguments.path.path()?;
+    let Some(path) = arguments.path.path()? else {
+        refuse!("give --depths-mm or --path");
+    };
     let map = match (&arguments.map, &arguments.phantom) {
         (Some(file), _) => ForceMap::read(file)?,
         (None, name) => map(name.as_deref().unwrap_or_default(), &path)?,
@@ -168,21 +147,6 @@ fn map(name: &str, path: &Path) -> Result<ForceMap, CliError> {
     let model = Model::new(&phantom, MESH_SIZE, Contact::default());
     let map = model.and_then(|model| model.map(&depths, &laterals, &|_| ()));
     map.map_err(CliError::fem(phantom.name()))
-}
-
-impl PathArguments {
-    fn path(&self) -> Result<Path, CliError> {
-        match &self.path {
-            Some(file) => {
-                let path = |text: &str, name: &str| Path::from_csv(text, name, self.rate_hz);
-                Ok(palpate::file::read(file, path)?)
-            }
-            None => {
-                let ends = [self.from, self.to];
-                Ok(Path::passes(&self.depths, ends, self.speed, self.rate_hz)?)
-            }
-        }
-    }
 }
 
 impl MotionArguments {

@@ -3,16 +3,14 @@
 use serde::Serialize;
 
 use super::Bank;
-use crate::detect::nuisance::Nuisances;
 use crate::force::Force;
-use crate::force_map::ForceMap;
 use crate::refusal::Refusal;
 use crate::robust::{
     BankHypotheses, Class, GelChanges, RobustDetector, RobustQuestion, RobustSweep,
 };
 use crate::stats::normal;
-use crate::trace::design::{depth_slope, difference, nuisances_of, stacked, whitened};
-use crate::trace::{Record, Unknown, refused};
+use crate::trace::design::gammas_along;
+use crate::trace::{Record, Unknown};
 
 /// What an inclusion must be found with.
 ///
@@ -21,8 +19,8 @@ use crate::trace::{Record, Unknown, refused};
 pub struct Reach<'a> {
     /// What may be there.
     pub bank: &'a Bank,
-    /// Samples of the sweep, evenly spaced over the lateral positions of the bank; none for one at each of these.
-    pub samples: Option<usize>,
+    /// Where the samples are taken: a record of which the forces count for nothing.
+    pub sweep: &'a Record,
     /// Standard deviation of a sample's noise, N.
     pub noise_sd: Force<f64>,
     /// Most false alarms of a search over all positions of the bank.
@@ -76,44 +74,36 @@ impl Reach<'_> {
     /// What is reached with each diameter and modulus, the diameters first.
     ///
     /// # Errors
-    /// As [`Reach::gamma`]; an unknown depth of a bank whose reference has one depth.
+    /// As [`Reach::gamma`]; a sweep that goes beyond the maps; an unknown depth of a bank whose reference has one depth.
     ///
     /// Implements: BNK-071.
     pub fn reached(&self) -> Result<Vec<Reached>, Refusal> {
-        let enough = self.gamma()?;
-        let (reference, depth) = (self.bank.reference(), self.bank.depth());
-        let positions = self.positions();
-        let expected = |map: &ForceMap, depth| map.table().sweep(depth, &positions).map(stacked);
-        let f0 = expected(reference, depth)?;
-        let depths = reference.table().depths();
-        let slope = || depth_slope(depths, depth, |depth| expected(reference, depth));
-        let samples = positions.len();
-        let nuisances = nuisances_of(self.unknown, (&f0, samples), slope)?;
-        let white = |signal: &[f64]| whitened(signal, samples, self.noise_sd);
-        let mut nuisances: Vec<f64> = nuisances.iter().flat_map(|of| white(of)).collect();
-        let space = Nuisances::new(&mut nuisances, f0.len()).map_err(refused)?;
-        let axes = self.bank.axes();
-        let gamma = |map: &usize| -> Result<f64, Refusal> {
-            let f1 = expected(&self.bank.maps()[*map], depth)?;
-            Ok(space.project(&mut white(&difference(&f1, &f0))))
-        };
-        let row = |maps: Vec<usize>| {
-            let gamma = maps.iter().map(gamma).collect::<Result<Vec<_>, _>>()?;
+        let (enough, middle) = (self.gamma()?, self.middle());
+        let (maps, axes) = (self.bank.maps(), self.bank.axes());
+        let gammas = gammas_along(
+            (self.sweep, self.bank.depth()),
+            self.unknown,
+            self.noise_sd,
+            self.bank.reference().table(),
+            middle.iter().flatten().map(|&map| maps[map].table()),
+        )?;
+        let row = |(maps, gamma): (&Vec<usize>, &[f64])| {
             let [_, _, diameter, modulus] = self.bank.point(maps[0]);
-            let depth = deepest(&axes[1], &gamma, enough);
-            Ok(Reached {
+            let depth = deepest(&axes[1], gamma, enough);
+            Reached {
                 diameter,
                 modulus,
                 is_beyond: depth == axes[1].last().copied(),
                 depth,
-                gamma,
-            })
+                gamma: gamma.to_vec(),
+            }
         };
-        self.middle().into_iter().map(row).collect()
+        let rows = middle.iter().zip(gammas.chunks(axes[1].len()));
+        Ok(rows.map(row).collect())
     }
 
     /// γ beside each class of disturbance of the robust detector: for each diameter and modulus, in the order of [`Reach::reached`], the
-    /// classes, each with γ at each depth of the bank. `changes` are those of the bank's reference at its depth.
+    /// classes, each with γ at each depth of the bank. `changes` are those of the bank's reference under the sweep.
     ///
     /// # Errors
     /// Too few samples.
@@ -123,23 +113,22 @@ impl Reach<'_> {
         &self,
         changes: Option<&GelChanges>,
     ) -> Result<Vec<Vec<BesideClass>>, Refusal> {
-        let positions = self.positions();
-        let zeros = vec![0.0; positions.len()];
-        let record = Record::new("sweep", &positions, Force::new(&zeros, &zeros))?;
-        let sweep = RobustSweep {
-            record: &record,
-            depth: self.bank.depth(),
-            changes,
-            is_reference: false,
-        };
         let question = RobustQuestion {
             noise_sd: Some(self.noise_sd),
             ..RobustQuestion::default()
         };
+        let (passes, _) = question.passes(self.sweep, self.bank.reference());
+        let sweep = |record| RobustSweep {
+            record,
+            depth: self.bank.depth(),
+            changes,
+            is_reference: false,
+        };
+        let sweeps: Vec<_> = passes.iter().map(sweep).collect();
         // The first are those of the maps, by their number: without a prior each of them is possible.
-        let signals = BankHypotheses::new(self.bank, None).signals(&[sweep])?;
+        let signals = BankHypotheses::new(self.bank, None).signals(&sweeps)?;
         let without = self.bank.reference().table();
-        let detector = RobustDetector::new(question, without, &[sweep], &signals)?;
+        let detector = RobustDetector::new(question, without, &sweeps, &signals)?;
         let row = |maps: Vec<usize>| {
             let gammas = maps.iter().map(|&map| detector.gammas(map, self.noise_sd));
             let by_depth: Vec<_> = gammas.collect();
@@ -167,12 +156,17 @@ impl Reach<'_> {
         };
         firsts.map(row).collect()
     }
+}
 
-    /// Where the samples are, m.
-    fn positions(&self) -> Vec<f64> {
-        let laterals = self.bank.reference().table().laterals();
+impl Bank {
+    /// A sweep over the lateral positions of the bank, of so many evenly spaced samples, or of one at each position.
+    ///
+    /// # Errors
+    /// No samples.
+    pub fn sweep(&self, samples: Option<usize>) -> Result<Record, Refusal> {
+        let laterals = self.reference().table().laterals();
         let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
-        match self.samples {
+        let positions = match samples {
             None => laterals.to_vec(),
             Some(1) => vec![0.5 * (first + last)],
             Some(samples) => {
@@ -180,7 +174,8 @@ impl Reach<'_> {
                 let position = |k: usize| (first + share(k) * (last - first)).min(last);
                 (0..samples).map(position).collect()
             }
-        }
+        };
+        Record::planned(&positions, &[])
     }
 }
 

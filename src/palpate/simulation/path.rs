@@ -2,6 +2,7 @@
 
 use crate::csv::{Column, Layout, Rows};
 use crate::refusal::Refusal;
+use crate::trace::Record;
 
 /// A path: straight lines between waypoints, and the times at which samples are taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,6 +86,19 @@ impl Path {
     /// The times of the samples, s.
     pub fn samples(&self) -> &[f64] {
         &self.samples
+    }
+
+    /// The path as a record without forces, for what can be found along it.
+    ///
+    /// # Errors
+    /// None that is known: a path has a sample.
+    ///
+    /// Implements: BNK-082.
+    pub fn sweep(&self) -> Result<Record, Refusal> {
+        let places: Vec<_> = self.samples.iter().map(|&time| self.at(time)).collect();
+        let [positions, depths] =
+            [0, 1].map(|axis| -> Vec<f64> { places.iter().map(|place| place[axis]).collect() });
+        Record::planned(&positions, &depths)
     }
 
     /// The smallest and the largest position (m), and the largest depth (m).

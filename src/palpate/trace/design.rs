@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::{Question, Record};
+use super::{Question, Record, refused};
 use crate::detect::DetectError;
 use crate::detect::nuisance::{DEPENDENT, Nuisances, SubspaceDetector};
 use crate::force::Force;
@@ -362,6 +362,33 @@ pub(crate) fn depth_slope(
     let (shallow, deep) = (expected(from)?, expected(to)?);
     let change = difference(&deep, &shallow);
     Ok(Some(scaled(&change, 1.0 / (to - from))))
+}
+
+/// γ of each map `with` an inclusion over the one `without`, along `sweep`, a record of which the forces count for nothing: beside what is
+/// `unknown`, in noise of `noise_sd` (N). `depth` (m) is that of a sweep whose samples have none.
+///
+/// # Errors
+/// As [`Record::expected`]; an unknown depth of a map of one depth.
+///
+/// Implements: BNK-082.
+pub fn gammas_along<'a>(
+    (sweep, depth): (&Record, f64),
+    unknown: &[Unknown],
+    noise_sd: Force<f64>,
+    without: &ForceTable,
+    with: impl IntoIterator<Item = &'a ForceTable>,
+) -> Result<Vec<f64>, Refusal> {
+    let (f0, samples) = (expected(sweep, without, depth)?, sweep.positions().len());
+    let slope = || slope(sweep, without, depth, expected);
+    let nuisances = nuisances_of(unknown, (&f0, samples), slope)?;
+    let white = |signal: &[f64]| whitened(signal, samples, noise_sd);
+    let mut nuisances: Vec<f64> = nuisances.iter().flat_map(|of| white(of)).collect();
+    let space = Nuisances::new(&mut nuisances, f0.len()).map_err(refused)?;
+    let gamma = |map| {
+        let f1 = expected(sweep, map, depth)?;
+        Ok(space.project(&mut white(&difference(&f1, &f0))))
+    };
+    with.into_iter().map(gamma).collect()
 }
 
 /// Half the way over which ∂F/∂d is taken at a sample with a depth of its own, m.

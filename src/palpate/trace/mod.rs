@@ -61,7 +61,7 @@ mod tests;
 
 use std::path::Path;
 
-pub use design::{Unknown, in_words, nuisances};
+pub use design::{Unknown, gammas_along, in_words, nuisances};
 pub use fit::{Cause, Fit, MISFIT_RATE, reasons};
 pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
 pub use live::{LiveSample, LiveSamples};

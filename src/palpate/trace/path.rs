@@ -44,6 +44,21 @@ impl Record {
         read().map_err(|refusal: Refusal| refusal.in_file(name))
     }
 
+    /// A record without forces, for what can be found where its samples are (m). `depths` are empty for a sweep at one depth.
+    ///
+    /// # Errors
+    /// As [`Record::along`].
+    ///
+    /// Implements: BNK-082.
+    pub fn planned(positions: &[f64], depths: &[f64]) -> Result<Record, Refusal> {
+        let zeros = vec![0.0; positions.len()];
+        let forces = Force::new(&zeros[..], &zeros[..]);
+        match depths {
+            [] => Record::new("sweep", positions, forces),
+            depths => Record::along("path", positions, depths, forces),
+        }
+    }
+
     /// The depth of each sample, m, if the record has them.
     ///
     /// Implements: TRC-080.

@@ -8,6 +8,7 @@ mod inputs;
 mod nuisances;
 mod outputs;
 mod page;
+mod paths;
 mod pictures;
 mod run;
 pub mod table_1;

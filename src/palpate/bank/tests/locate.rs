@@ -308,14 +308,54 @@ fn a_prior_excludes_what_it_gives_no_weight() {
     assert!(found.theta_mixture < all.theta_mixture);
 }
 
+// Verifies: BNK-082. The rows of the maps, which the samples of the path are at, sum up another way to γ.
+#[test]
+fn gamma_along_a_path_is_that_of_all_its_passes() {
+    use crate::simulation::Path;
+    use crate::trace::gammas_along;
+    let depths = [2e-3, 4e-3];
+    let [without, with] = [None, Some((0.0, 3.0, 6.0))].map(|at| map(at, &depths));
+    let laterals = without.table().laterals();
+    let ends = [laterals[0], laterals[laterals.len() - 1]];
+    let rate = (laterals.len() - 1) as f64 / (ends[1] - ends[0]);
+    let sweep = Path::passes(&depths, ends, 1.0, rate)
+        .unwrap()
+        .sweep()
+        .unwrap();
+    assert_eq!(sweep.positions().len(), 2 * laterals.len());
+    let gamma = |unknown: &[Unknown]| {
+        let noise_sd = Force::new(0.2, 0.1);
+        let tables = (without.table(), [with.table()]);
+        gammas_along((&sweep, 0.0), unknown, noise_sd, tables.0, tables.1).unwrap()[0]
+    };
+    let signal = with.table().minus(without.table()).unwrap();
+    let channels = [(signal.lateral().unwrap(), 0.2), (signal.normal(), 0.1)];
+    let squares = |about_mean: f64| -> f64 {
+        let of = |(matrix, sd): &(&Matrix, f64)| {
+            let mean = matrix.values().iter().sum::<f64>() / matrix.values().len() as f64;
+            let squares = matrix
+                .values()
+                .iter()
+                .map(|f| (f - about_mean * mean).powi(2));
+            squares.sum::<f64>() / (sd * sd)
+        };
+        channels.iter().map(of).sum()
+    };
+    assert_near(gamma(&[]), squares(0.0).sqrt(), 1e-9);
+    // An offset of either force takes its mean over both passes.
+    assert_near(gamma(&[Unknown::Offset]), squares(1.0).sqrt(), 1e-9);
+    assert!(squares(1.0) < 0.95 * squares(0.0));
+}
+
 // Verifies: BNK-070, BNK-071.
 #[test]
 fn reach_is_where_gamma_is_enough() {
     use crate::stats::normal::quantile;
     let bank = all();
+    let sweep = bank.sweep(None).unwrap();
     let reach = |sd: f64, unknown: &'static [Unknown]| Reach {
         bank: &bank,
-        samples: None,
+        sweep: &sweep,
         noise_sd: Force::new(sd, sd),
         max_false_alarm: 0.01,
         max_miss: 0.05,
@@ -357,7 +397,8 @@ fn reach_is_where_gamma_is_enough() {
     let mut pairs = beside[0].gamma.iter().zip(&found[0].gamma);
     assert!(pairs.all(|(less, all)| less < all));
     let mut many = reach(sd, &[]);
-    many.samples = Some(49);
+    let finer = bank.sweep(Some(49)).unwrap();
+    many.sweep = &finer;
     let many = many.reached().unwrap();
     assert!((many[1].gamma[3] / found[1].gamma[3] - 2.0).abs() < 0.1);
     let noisy = reach(1e3, &[]).reached().unwrap();

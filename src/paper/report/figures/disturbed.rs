@@ -94,8 +94,7 @@ fn gammas(run: &Run, map: &ForceMap, depth: f64, length: f64) -> Result<Gammas, 
     let positions: Vec<f64> = (0..=samples)
         .map(|k| STEP * (f64::from(k) - 0.5 * f64::from(samples)))
         .collect();
-    let zeros = vec![0.0; positions.len()];
-    let record = Record::new("sweep", &positions, Force::new(&zeros, &zeros))?;
+    let record = Record::planned(&positions, &[])?;
     let sweep = RobustSweep {
         record: &record,
         depth,

@@ -12,6 +12,7 @@
 //! | `forces.rs` | Figures 5 and 7, and the signals |
 //! | `gamma.rs` | γ of a sweep beside what may be unknown of it |
 //! | `disturbed.rs` | γ of a sweep beside what may disturb it |
+//! | `paths.rs` | γ along paths that take equally long |
 //! | `inputs.rs` | which input counts, by a study |
 //! | `people.rs`, `bridge.rs` | Figures 8 and 10 to 13: Table 1; the forces against it |
 
@@ -22,6 +23,7 @@ mod forces;
 mod gamma;
 mod inputs;
 mod mesh;
+mod paths;
 mod people;
 mod plan;
 mod setup;
@@ -45,6 +47,7 @@ pub fn figures(run: &Run, findings: &Findings) -> Result<Vec<Figure>, Refusal> {
     plans.extend(theory::figures().map_err(Refusal::because("figures"))?);
     plans.extend(gamma::figure(run, findings));
     plans.extend(disturbed::figure(run, findings)?);
+    plans.extend(paths::figure(run, findings));
     plans.extend(theories::figures(run, findings)?);
     plans.extend(inputs::figure(run));
     plans.extend(people::figures(run, &findings.people));

@@ -1,0 +1,52 @@
+//! Where the probe is sent, as `simulate` and `reach` take it.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::CliError;
+use super::numbers::{at_least_0, length, position, velocity};
+use palpate::simulation::Path;
+
+/// Where the probe is sent.
+#[derive(Debug, Args)]
+#[group(skip)]
+pub struct PathArguments {
+    /// Depths of the probe in mm, a pass for each in turn, there and back: a list such as 1,2,3,4
+    #[arg(long = "depths-mm", value_name = "LIST", value_parser = length, value_delimiter = ',', allow_hyphen_values = true)]
+    depths: Vec<f64>,
+    /// Where a pass begins and ends, in mm
+    #[arg(long = "from-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "-8")]
+    from: f64,
+    #[arg(long = "to-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "8")]
+    to: f64,
+    /// Speed of a pass in mm/s
+    #[arg(long = "speed-mm-s", value_name = "V", value_parser = velocity, allow_hyphen_values = true, default_value = "10")]
+    speed: f64,
+    /// Any other path: a CSV file with time_s, position_mm and depth_mm of waypoints
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["depths", "from", "to", "speed"])]
+    path: Option<PathBuf>,
+    /// Samples per second
+    #[arg(long, value_name = "HZ", value_parser = at_least_0, allow_hyphen_values = true, default_value = "100")]
+    rate_hz: f64,
+}
+
+impl PathArguments {
+    /// The path; none if none was given.
+    pub fn path(&self) -> Result<Option<Path>, CliError> {
+        if let Some(file) = &self.path {
+            let path = |text: &str, name: &str| Path::from_csv(text, name, self.rate_hz);
+            return Ok(Some(palpate::file::read(file, path)?));
+        }
+        if self.depths.is_empty() {
+            return Ok(None);
+        }
+        let ends = [self.from, self.to];
+        Ok(Some(Path::passes(
+            &self.depths,
+            ends,
+            self.speed,
+            self.rate_hz,
+        )?))
+    }
+}
