@@ -1,9 +1,14 @@
-//! Reports of a device, and recordings of a session.
+//! Reports of a device, alone and in a pipe, and recordings of a session.
+
+use std::io::Write;
+use std::time::Duration;
 
 use palpate::force::Force;
 use palpate::force_map::{ForceTable, Matrix};
+use palpate::hid::pipe::PipeDevice;
 use palpate::hid::{
-    Capabilities, Control, ForceReport, InvalidReport, PositionReport, Recording, Units, count,
+    Capabilities, Control, ForceReport, HapticDevice, InvalidReport, PositionReport, Received,
+    Recording, Units, count,
 };
 use palpate::servo::LoadedTable;
 
@@ -85,6 +90,38 @@ fn check_units(capabilities: &Capabilities, bytes: &[u8]) {
     assert!(sample.depth.is_finite() && sample.lateral.is_finite());
     let value = f32::from_le_bytes([bytes[11], bytes[12], bytes[13], bytes[14]]);
     assert!(count(value).unsigned_abs() <= 32767);
+}
+
+/// A pipe brings the reports that stand in its bytes one after the other, and then tells how it ended. More than 4,096 bytes, which a pipe
+/// may not hold, are not tried.
+pub fn pipe_reports(bytes: &[u8]) -> Outcome {
+    const FIRST: usize = Capabilities::LENGTH;
+    if bytes.len() > 4096 {
+        return Outcome::Refused;
+    }
+    let (input, mut bridge) = std::io::pipe().expect("a pipe");
+    bridge.write_all(bytes).expect("room for 4096 bytes");
+    drop(bridge);
+    let whole = bytes
+        .get(..FIRST)
+        .and_then(|first| Capabilities::decode(first).ok());
+    let mut device = match PipeDevice::open(input, Vec::new()) {
+        Ok(device) => device,
+        Err(error) => {
+            check_message(&error.to_string());
+            assert_eq!(whole, None);
+            return Outcome::Refused;
+        }
+    };
+    assert_eq!(device.capabilities().ok(), whole);
+    let reports = bytes[FIRST..].chunks(PositionReport::LENGTH);
+    let reports = reports.map_while(|bytes| PositionReport::decode(bytes).ok());
+    let expected: Vec<_> = reports.map(Received::Report).collect();
+    let mut read = || device.read(Duration::ZERO);
+    let found: Vec<_> = std::iter::from_fn(|| read().ok()).collect();
+    assert_eq!(found, expected);
+    check_message(&read().expect_err("an end").to_string());
+    Outcome::Accepted
 }
 
 /// An accepted recording is the same when it is written and read again, and plays again or tells

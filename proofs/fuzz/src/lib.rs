@@ -5,11 +5,12 @@
 //! | `phantom.rs` | phantom files |
 //! | `config.rs` | the configuration of `palpate run` |
 //! | `map.rs` | force maps, JSON and CSV |
-//! | `trace.rs` | recorded sweeps |
+//! | `trace.rs` | recorded sweeps, whole and line by line |
+//! | `path.rs` | paths of the probe |
 //! | `counts.rs` | counts of right answers, and the journal of an experiment |
 //! | `suite.rs` | vectors |
 //! | `oracle.rs` | one line of the oracle |
-//! | `hid.rs` | reports of a device, and recordings of a session |
+//! | `hid.rs` | reports of a device, alone and in a pipe, and recordings of a session |
 //! | `command_line.rs` | the command line, its lists, and decimal numbers |
 //! | `random.rs` | cases without a fuzzer |
 //!
@@ -27,6 +28,7 @@ pub mod hid;
 pub mod map;
 mod message;
 pub mod oracle;
+pub mod path;
 pub mod phantom;
 pub mod random;
 pub mod suite;
@@ -65,11 +67,14 @@ pub const TARGETS: &[Target] = &[
     Target::new("map_json", OfText(map::map_json)),
     Target::new("map_csv", OfText(map::map_csv)),
     Target::new("trace_csv", OfText(trace::trace_csv)),
+    Target::new("live_lines", OfText(trace::live_lines)),
+    Target::new("path_csv", OfText(path::path_csv)),
     Target::new("counts_csv", OfText(counts::counts_csv)),
     Target::new("journal", OfText(counts::journal)),
     Target::new("vectors", OfText(suite::vectors)),
     Target::new("oracle_line", OfBytes(oracle::oracle_line)),
     Target::new("hid_report", OfBytes(hid::hid_report)),
+    Target::new("pipe_reports", OfBytes(hid::pipe_reports)),
     Target::new("recording", OfText(hid::recording)),
     Target::new("list", OfText(command_line::list)),
     Target::new("decimal", OfBytes(command_line::decimal)),

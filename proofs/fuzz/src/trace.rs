@@ -1,10 +1,10 @@
-//! Recorded sweeps.
+//! Recorded sweeps, whole and line by line.
 
 use palpate::refusal::Refusal;
-use palpate::trace::{Abscissa, Motion, Record, Trace};
+use palpate::trace::{Abscissa, LiveSample, LiveSamples, Motion, Record, Trace};
 
 use crate::map::check_csv;
-use crate::message::check_file_message;
+use crate::message::{check_file_message, check_message};
 use crate::{FILE, Outcome, judged};
 
 /// An accepted trace has finite forces, lateral ones or none, at positions that go one way but for jitter unless each has its depth, and is
@@ -80,4 +80,68 @@ fn written(record: &Record) -> String {
         text += &format!("{position:?},{:?}{lateral}{depth}\n", forces.normal[at]);
     }
     text
+}
+
+/// Samples that come line by line have numbers that are finite or missing, all of them a depth and a lateral force or none, and are the
+/// same when they are written as JSON and read again. A refusal names the line that came last.
+pub fn live_lines(text: &str) -> Outcome {
+    let mut lines = LiveSamples::new(FILE, Default::default());
+    let mut samples = Vec::new();
+    for (at, line) in text.lines().enumerate() {
+        match lines.sample(line) {
+            Ok(sample) => samples.extend(sample),
+            Err(error) => {
+                check_message(&error.to_string());
+                assert_eq!((error.line, &*error.file), (Some(at + 1), FILE));
+                return Outcome::Refused;
+            }
+        }
+    }
+    let Some(first) = samples.first() else {
+        return Outcome::Refused;
+    };
+    let mut again = LiveSamples::new(FILE, Default::default());
+    for sample in &samples {
+        assert_eq!(
+            (sample.depth.is_some(), sample.lateral.is_some()),
+            (first.depth.is_some(), first.lateral.is_some())
+        );
+        let read = again
+            .sample(&as_json(sample))
+            .expect("what was written can be read");
+        assert_eq!(bits(&read.expect("a sample")), bits(sample));
+    }
+    Outcome::Accepted
+}
+
+/// The names of its numbers in SI units, and the numbers that it has.
+fn numbers(sample: &LiveSample) -> [(&'static str, Option<f64>); 4] {
+    [
+        ("position_m", Some(sample.position)),
+        ("depth_m", sample.depth),
+        ("lateral_force_n", sample.lateral),
+        ("normal_force_n", Some(sample.normal)),
+    ]
+}
+
+/// The sample as a line of JSON; the digits name each number to the bit, and a missing one is null.
+fn as_json(sample: &LiveSample) -> String {
+    let there = numbers(sample).into_iter().filter_map(|(name, number)| {
+        let number = number?;
+        assert!(!number.is_infinite(), "{sample:?}");
+        Some(match number.is_nan() {
+            true => format!("\"{name}\":null"),
+            false => format!("\"{name}\":{number:?}"),
+        })
+    });
+    format!("{{{}}}", there.collect::<Vec<_>>().join(","))
+}
+
+/// A sample of which one number is missing is missing as a whole.
+fn bits(sample: &LiveSample) -> [Option<u64>; 4] {
+    let numbers = numbers(sample);
+    let is_missing = numbers
+        .iter()
+        .any(|(_, number)| number.is_some_and(f64::is_nan));
+    numbers.map(|(_, number)| number.map(|number| if is_missing { 0 } else { number.to_bits() }))
 }
