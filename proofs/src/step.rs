@@ -59,7 +59,7 @@ fn play(case: &Cycle) -> (State, Command) {
 
 // Verifies: SRV-001, SRV-013, SRV-020, SRV-070.
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
+#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(minisat))]
 fn force_is_bounded() {
     harness!(Cycle, |case| {
         let (limits, state, input) = case.parts();
@@ -83,10 +83,9 @@ fn force_is_bounded() {
     });
 }
 
-// No Kani proof with any limits: `approach`, which keeps them, has its own.
 // Verifies: SRV-021.
-#[cfg(not(kani))]
 #[test]
+#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
 fn slew_is_limited() {
     harness!(SoundCycle, |case| {
         let SoundCycle(case) = case;
@@ -127,7 +126,7 @@ fn slew_is_limited() {
 
 // Verifies: SRV-014, SRV-030.
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
+#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(minisat))]
 fn no_force_unless_permitted() {
     harness!(SoundCycle, |case| {
         let SoundCycle(case) = case;
@@ -163,7 +162,7 @@ fn no_force_unless_permitted() {
 
 // Verifies: SRV-033.
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
+#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(minisat))]
 fn arming_needs_every_condition() {
     harness!(ArmingCycle, |case| {
         let case = &case.0;
@@ -207,7 +206,7 @@ impl TypeGenerator for ArmingCycle {
 
 // Verifies: SRV-032, SRV-035, SRV-042.
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
+#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(minisat))]
 fn fault_latches() {
     harness!(Cycle, |case| {
         let (next, _) = play(case);
@@ -235,7 +234,7 @@ fn fault_latches() {
 
 // Verifies: SRV-040.
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
+#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(minisat))]
 fn stale_samples_are_not_taken_over_while_armed() {
     harness!(Cycle, |case| {
         let (next, _) = play(case);
@@ -296,7 +295,7 @@ impl TypeGenerator for Silence {
 
 // Verifies: SRV-031, SRV-042.
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(7), kani::solver(cadical))]
+#[cfg_attr(kani, kani::proof, kani::unwind(7), kani::solver(minisat))]
 fn watchdog_drops_the_force() {
     harness!(Silence, |case| {
         let table = plain_table();
@@ -395,7 +394,7 @@ impl<L> Released<L> {
 
 // Verifies: SRV-031.
 #[test]
-#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(cadical))]
+#[cfg_attr(kani, kani::proof, kani::unwind(6), kani::solver(minisat))]
 fn a_released_force_is_zero_in_three_cycles_of_half_the_limit() {
     harness!(Released<QuickLimits>, |case| {
         assert!(case.force_after(&case.limits.0, 3) == Force::ZERO);

@@ -1,9 +1,9 @@
 //! The force of a table: in the hull, at the nodes, on the borders, beyond.
 
 use bolero::{Driver, TypeGenerator};
-use palpate_core::servo::Cell;
+use palpate_core::servo::{Cell, blend};
 
-use crate::cases::{Fraction, Grid, near};
+use crate::cases::{Entry, Fraction, Grid, near};
 
 /// A table and any place.
 #[derive(Debug, Clone)]
@@ -44,7 +44,7 @@ macro_rules! hull {
     ($name:ident, $axes:literal, $normal:literal, $row:literal) => {
         // Verifies: SRV-010.
         #[test]
-        #[cfg_attr(kani, kani::proof, kani::unwind(14))]
+        #[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(minisat))]
         fn $name() {
             harness!(Place<$axes, $normal>, |case| {
                 type G = Grid<$axes, $normal>;
@@ -80,23 +80,24 @@ hull!(force_is_in_the_hull_exact_lateral_1, 2, false, 1);
 hull!(force_is_in_the_hull_exact_normal_0, 2, true, 0);
 hull!(force_is_in_the_hull_exact_normal_1, 2, true, 1);
 
-/// The table's entry at each node, with positions that are constants to a solver.
+/// The table's entry at a node that is chosen by its number: one force, whichever it is.
 macro_rules! nodes {
     ($name:ident, $axes:literal, $normal:literal) => {
         // Verifies: SRV-011.
         #[test]
-        #[cfg_attr(kani, kani::proof, kani::unwind(14))]
+        #[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(minisat))]
         fn $name() {
-            harness!(Grid<$axes, $normal>, |grid| {
+            harness!((Grid<$axes, $normal>, u8), |case| {
                 type G = Grid<$axes, $normal>;
-                let table = grid.table();
-                for row in 0..3 {
-                    for column in 0..4 {
-                        let force = table.force(G::DEPTHS[row], G::LATERALS[column]);
-                        assert!(G::component(force) == grid.values[row * 4 + column]);
-                    }
+                let (grid, node) = case;
+                let (row, column) = (usize::from(node % 4).min(2), usize::from(node / 64));
+                let force = grid.table().force(G::DEPTHS[row], G::LATERALS[column]);
+                assert!(G::component(force) == grid.values[row * 4 + column]);
+                reached! {
+                    "the first corner": row == 0 && column == 0,
+                    "the last corner": row == 2 && column == 3,
+                    "a node inside": row == 1 && column == 1,
                 }
-                reached! { "a force at the last corner": grid.values[11] != 0.0 }
             });
         }
     };
@@ -116,7 +117,6 @@ fn agree_on_borders<const AXES: usize, const NORMAL: bool>(
     let table = grid.table();
     let cell = |index, fraction| Cell { index, fraction };
     let along = |index| cell(index, fraction);
-    // Every border has its own step, with indices that are constants to a solver.
     for column in 0..3 {
         let before = table.force_in(cell(0, 1.0), along(column));
         assert!(before == table.force_in(cell(1, 0.0), along(column)));
@@ -129,26 +129,22 @@ fn agree_on_borders<const AXES: usize, const NORMAL: bool>(
     }
 }
 
-/// The same from both cells of a border, at fractions that are constants to a solver.
-macro_rules! borders {
-    ($name:ident, $axes:literal, $normal:literal) => {
-        // Verifies: SRV-011.
-        #[test]
-        #[cfg_attr(kani, kani::proof, kani::unwind(14))]
-        fn $name() {
-            harness!(Grid<$axes, $normal>, |grid| {
-                for fraction in [-1.0, 0.0, 0.3, 1.0, 2.0] {
-                    agree_on_borders(grid, fraction);
-                }
-                reached! { "a force at the last corner": grid.values[11] != 0.0 }
-            });
+/// At a border both cells blend to the node there, so that they blend along it between equal forces.
+// Verifies: SRV-011.
+#[test]
+#[cfg_attr(kani, kani::proof, kani::solver(minisat))]
+fn adjoining_cells_meet_in_the_nodes_of_their_border() {
+    harness!((Entry, Entry, Entry), |case| {
+        let &(Entry(before), Entry(node), Entry(after)) = case;
+        assert!(blend(before, node, 1.0) == node && blend(node, after, 0.0) == node);
+        reached! {
+            "a force": node != 0.0,
+            "a force between larger ones": before > node && node < after,
         }
-    };
+    });
 }
-borders!(adjoining_cells_agree_on_their_border_lateral, 0, false);
-borders!(adjoining_cells_agree_on_their_border_normal, 0, true);
 
-// No Kani proof: two symbolic products, which must be found to be the same, end in no solver.
+// No Kani proof: two symbolic products, which must be found to be the same, end in no solver. That above is their lemma.
 // Verifies: SRV-011.
 #[cfg(not(kani))]
 #[test]
@@ -168,7 +164,7 @@ macro_rules! bounded {
     ($name:ident, $axes:literal, $normal:literal) => {
         // Verifies: SRV-013, SRV-014.
         #[test]
-        #[cfg_attr(kani, kani::proof, kani::unwind(14))]
+        #[cfg_attr(kani, kani::proof, kani::unwind(14), kani::solver(minisat))]
         fn $name() {
             harness!(Place<$axes, $normal>, |case| {
                 type G = Grid<$axes, $normal>;

@@ -29,7 +29,7 @@ the clamp to the hull left out: a_blend_is_between_its_ends
 `(0.0..=1.0).contains(&t)` becomes `t.is_nan()`
 the table transposed: nodes_are_exact
 `wrapping_mul(columns)` becomes `wrapping_mul(self.depths.knots().len())`
-the upper row twice: adjoining_cells_agree_on_their_border
+the upper row twice: adjoining_cells_agree_at_any_fraction
 `self.forces.get(second..)` becomes `self.forces.get(first..)`
 a force above the surface: force_of_a_table_is_bounded
 `if depth < 0.0 { Force::ZERO } else { force }` becomes `force`
