@@ -4,7 +4,7 @@ Lengths are mm, moduli kPa, forces N; arrays of both forces are lateral first. W
 """
 
 from os import PathLike
-from typing import Any, Callable, Iterator, Sequence, TypedDict, final
+from typing import Any, Callable, Iterator, Sequence, TypedDict, final, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -48,6 +48,7 @@ class _Located(_Place):
     inclusion: bool | None
     decision: str
     causes: list[str]
+    reasons: list[str]
     decided_by: str
     theta_max: float
     theta_mixture: float
@@ -81,6 +82,7 @@ class _Judged(_Place, total=False):
     model: str
     decision: str
     causes: list[str]
+    reasons: list[str]
     posterior_h1: float | None
     theta: float | None
     false_alarm: float | None
@@ -97,6 +99,30 @@ class _Judged(_Place, total=False):
     glitches: list[int]
     samples_in_air: list[list[int]]
 
+class _LikeliestPlace(TypedDict):
+    position_m: float
+    depth_m: float
+    diameter_m: float
+    youngs_modulus_pa: float
+    probability: float
+
+class _Watched(TypedDict):
+    samples: int
+    missing: int
+    outside: int
+    posterior_h1: float
+    theta: float
+    decision: str | None
+    decided_at_sample: int | None
+    causes: list[str]
+    reasons: list[str]
+    likeliest: _LikeliestPlace | None
+    places: int
+    covered: int
+    excluded: int
+    open_positions_m: list[float]
+    uncovered_positions_m: list[float]
+
 class _Nuisances(TypedDict):
     t: float
     gamma: float
@@ -106,7 +132,7 @@ class _Nuisances(TypedDict):
     false_alarm: float
     miss: float
     rank: int
-    degrees: int
+    degrees: float
 
 class _BankPosterior(TypedDict):
     theta: list[float]
@@ -127,7 +153,7 @@ class _Counts(TypedDict):
     pooled: list[int]
     rate: list[float]
     gamma: list[float]
-    chi2: float
+    chi2: list[float]
     df: int
 
 class Refused(ValueError): ...
@@ -157,9 +183,14 @@ class Phantom:
     def height_mm(self) -> float: ...
     @property
     def inclusion_depth_mm(self) -> float | None: ...
-    def solve(
+    @overload
+    def solve(  # type: ignore[overload-overlap]
         self, depth_mm: float, lateral_mm: float = 0.0, mesh_mm: float = 0.5, contact: str = "deformed-normal"
     ) -> ProbeForce: ...
+    @overload
+    def solve(
+        self, depth_mm: ArrayLike, lateral_mm: ArrayLike = 0.0, mesh_mm: float = 0.5, contact: str = "deformed-normal"
+    ) -> NDArray[np.float64]: ...
     def map(
         self,
         depths_mm: ArrayLike,
@@ -355,7 +386,7 @@ class Watcher:
         normal_force_n: float,
         lateral_force_n: float | None = None,
         depth_mm: float | None = None,
-    ) -> dict[str, Any]: ...
+    ) -> _Watched: ...
 
 def calibrate(
     depths_mm: ArrayLike,

@@ -18,8 +18,8 @@ use rayon::prelude::*;
 
 use crate::classes::{ForceMap, Phantom};
 use crate::convert::{
-    Any, Names, Records, array, floats, html, in_unit, lengths, list, pair, python, refused,
-    remade, si, tell,
+    Any, Names, Records, array, floats, give_reasons, html, in_unit, lengths, list, pair, python,
+    refused, remade, si, tell,
 };
 use crate::map::axes;
 
@@ -46,8 +46,14 @@ fn named<'py, T: IntoPyObject<'py>>(
 }
 
 /// The forces of one gel without an inclusion, and with each of those that may be there: a full grid of positions, depths, diameters
-/// and Young's moduli. Bank(reference, maps) is the bank of force maps.
-///
+/// and Young's moduli.
+#[doc = sections!(
+    reference: "ForceMap" = "The forces without an inclusion, N.",
+    maps: "sequence of ForceMap" = "Those with each inclusion, whose phantoms make the full grid, N.";;
+    "Maps of other poses or gels, or an inclusion that is missing or there twice."
+)]
+/// Examples
+/// --------
 /// >>> x = np.linspace(-8, 8, 81)
 /// >>> bank = Bank.build(Phantom("6.6"), 4, [-8, -4, 0, 4, 8], offsets_mm=[-2, 0, 2], mesh_mm=2)
 /// >>> record = bank.maps[2].sweep(4, x) + 0.05 * np.random.default_rng(1).standard_normal((2, 81))
@@ -196,6 +202,7 @@ fn told<'py>(py: Python<'py>, bank: &bank::Bank, found: &Location) -> PyResult<B
     let answer = python(py, &found.rows(bank).map_err(refused)?)?;
     let decided = found.decision.map(|found| found == Decision::Inclusion);
     answer.set_item("inclusion", decided)?;
+    give_reasons(&answer, &found.causes)?;
     for (key, named) in [
         ("likeliest", at(found.point)?),
         ("estimate", at(place.estimate)?),
@@ -225,9 +232,19 @@ impl Bank {
         Ok(Bank::of(bank.map_err(refused)?))
     }
 
-    /// The bank for the one inclusion of phantom, varied: x of its centre (offsets_mm), depth, diameter, all in mm, and Young's modulus in
-    /// kPa, each a number or an array, or None for that of the phantom. probe_depth_mm, a depth or several, and laterals_mm, shape (n,), in mm: the sweeps. mesh_mm
-    /// and contact as of Phantom.solve; progress as of Phantom.map, with numbers of computations.
+    /// The bank for the one inclusion of a phantom, varied; what is None has the value of the phantom.
+    #[doc = sections!(
+        phantom: "Phantom" = "The gel with one inclusion.",
+        probe_depth_mm: "float or array_like" = "Depth of the sweeps, or several that increase, mm.",
+        laterals_mm: "array_like, shape (n,)" = "Lateral positions of the sweeps, increasing, mm.",
+        offsets_mm: "float or array_like, optional" = "x of the inclusion's centre, mm.",
+        depths_mm: "float or array_like, optional" = "Depths of the inclusion's top, mm.",
+        diameters_mm: "float or array_like, optional" = "Diameters of the inclusion, mm.",
+        stiffnesses_kpa: "float or array_like, optional" = "Young's moduli of the inclusion, kPa.",
+        mesh_mm, contact, progress;
+        "Bank" = "The forces without the inclusion and with each, N.";
+        "An inclusion or a pose that cannot be, or a phantom without one inclusion."
+    )]
     // Implements: PYT-010, PYT-020.
     #[staticmethod]
     #[pyo3(signature = (phantom, probe_depth_mm, laterals_mm, offsets_mm=None, depths_mm=None, diameters_mm=None, stiffnesses_kpa=None,
@@ -270,12 +287,14 @@ impl Bank {
     }
 
     /// The bank in a file, as palpate bank writes it.
+    #[doc = sections!(path; "Bank" = "The bank."; "No such file, or one that is no bank, with line and key.")]
     #[staticmethod]
     fn read(path: PathBuf) -> PyResult<Bank> {
         Ok(Bank::of(bank::Bank::read(&path).map_err(refused)?))
     }
 
     /// The bank of a JSON text, as to_json gives it.
+    #[doc = sections!(text; "Bank" = "The bank, with all of its digits."; "A text that is no bank, with line and key.")]
     #[staticmethod]
     fn from_json(text: &str) -> PyResult<Bank> {
         Ok(Bank::of(
@@ -289,6 +308,7 @@ impl Bank {
     }
 
     /// Writes the bank to a file, for palpate detect too. A file that is there is overwritten.
+    #[doc = sections!(path;;)]
     fn write(&self, path: PathBuf) -> PyResult<()> {
         Ok(std::fs::write(path, self.bank.to_json())?)
     }
@@ -323,15 +343,18 @@ impl Bank {
         named(py, values)
     }
 
-    /// Is an inclusion of the bank in a record, whatever gel, motion and sensor did to it? The answer of palpate detect --bank with the keys
-    /// of its JSON, in SI, in a dictionary, and inclusion (True, False, or None where the record cannot be judged, for the causes).
+    /// Is an inclusion of the bank in a record, whatever gel, motion and sensor did to it? The answer of palpate detect --bank.
     ///
-    /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N, or (n,), normal alone. noise_sd_n: of a sample in
-    /// N, one for both channels or (lateral, normal), or None if the record tells. known: what does not disturb the sweep, of smooth, gel, support,
-    /// stage, surface, tilt, friction, relaxation and walk. zeroed: whether the sensor was set to zero on the gel. sure: the posterior from
-    /// which there is an inclusion. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion. depths_mm: shape (n,), of
-    /// each sample, in the order of time, for a bank of several depths of the probe; the passes are then judged together. The first call
-    /// computes the gels beside that of the bank, one with depths_mm each time.
+    /// The first call computes the gels beside that of the bank, one with depths_mm each time; the passes of that are judged together.
+    #[doc = sections!(
+        positions_mm, forces_n, own_noise_sd_n,
+        known: "str or sequence of str, optional" = "What does not disturb: smooth, gel, support, stage, surface, tilt, friction, relaxation, walk.",
+        zeroed,
+        sure: "float, optional" = "The posterior from which on there is an inclusion.",
+        prior, own_prior_h1, own_depths_mm;
+        "dict" = "The JSON of palpate detect, in SI; inclusion (True, False or None: cannot be judged) and reasons, the words for causes.";
+        "A sample beyond the bank or not finite, or a name or a number that makes no sense."
+    )]
     #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, known=Names::of(&[]), zeroed=false, sure=0.95, prior=None, prior_h1=0.5,
         depths_mm=None),
         text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, known=(), zeroed=False, sure=0.95, prior=None, prior_h1=0.5, depths_mm=None)")]
@@ -384,20 +407,26 @@ impl Bank {
         });
         let (answer, place) = found?;
         let told = python(py, &answer.rows(Some((&self.bank, &place))))?;
+        give_reasons(&told, &answer.causes)?;
         let decided = answer.decision.map(|found| found == Decision::Inclusion);
         told.set_item("inclusion", decided)?;
         Ok(told)
     }
 
-    /// As palpate detect --model exact: is one of the bank's inclusions in a record, and where? A dictionary: inclusion (True, False, or None where the record cannot be
-    /// judged, for the causes) and the answer of palpate detect with the keys of its JSON, in SI (decision, posterior_h1, theta_max, eta,
-    /// gamma ...); likeliest, estimate, mean and interval_95 of each parameter in mm and kPa, if there is an inclusion; places,
-    /// shape (m, 4), one column for each key of axes in its order, and their probabilities, shape (m,).
+    /// Is one of the bank's inclusions in a record, and where? The answer of palpate detect --model exact, for the fewest errors, or with at
+    /// most max_miss or max_false_alarm.
     ///
-    /// positions_mm: shape (n,), in mm; forces_n: shape (2, n), lateral and normal, in N, or (n,), normal alone. noise_sd_n: of a sample in
-    /// N, one for both channels or (lateral, normal), or None if the record tells. unknown: what is fitted, of offset, drift, gain, depth and variance.
-    /// white: do not test the record for correlated noise. zeroed: whether the sensor was set to zero on the gel. The decision is for the fewest errors, or keeps
-    /// max_miss or max_false_alarm. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion. depths_mm as of judge.
+    /// The answer also has likeliest, estimate, mean and interval_95 of each parameter in mm and kPa, if there is an inclusion; places,
+    /// shape (m, 4), one column for each key of axes in its order; and their probabilities, shape (m,).
+    #[doc = sections!(
+        positions_mm, forces_n, own_noise_sd_n,
+        unknown: "str or sequence of str, optional" = "What is fitted, of offset, drift, gain, depth and variance.",
+        white: "bool, optional" = "Whether the noise is white, so that it is not tested.",
+        depth_tolerance_mm: "float, optional" = "The depth is known within so much, mm.",
+        own_max_miss, own_max_false_alarm, prior, own_prior_h1, zeroed, own_depths_mm;
+        "dict" = "As of judge, with what is above.";
+        "As judge; both rates."
+    )]
     #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, unknown=Names::of(&["offset", "drift", "gain", "variance"]), white=false, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=false, depths_mm=None),
         text_signature = "($self, positions_mm, forces_n, noise_sd_n=None, unknown=('offset', 'drift', 'gain', 'variance'), white=False, depth_tolerance_mm=0.3, max_miss=None, max_false_alarm=None, prior=None, prior_h1=0.5, zeroed=False, depths_mm=None)")]
     #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
@@ -442,8 +471,14 @@ impl Bank {
         told(py, &self.bank, &found.map_err(refused)?)
     }
 
-    /// Draws the posterior density of one parameter, given an inclusion, of an answer of locate, and returns the axes: ax, or Matplotlib's current
-    /// ones. parameter: a key of axes, with its unit, mm or kPa. Needs Matplotlib.
+    /// Draws the posterior density of one parameter, given an inclusion; needs Matplotlib.
+    #[doc = sections!(
+        answer: "dict" = "An answer of locate.",
+        parameter: "str, optional" = "A key of axes, with its unit, mm or kPa.",
+        ax;
+        "matplotlib Axes" = "Where it was drawn.";
+        "Another parameter."
+    )]
     // Implements: PYT-045.
     #[staticmethod]
     #[pyo3(signature = (answer, parameter="position_mm", ax=None))]

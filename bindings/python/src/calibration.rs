@@ -6,12 +6,19 @@ use pyo3::prelude::*;
 use crate::classes::Phantom;
 use crate::convert::{Any, interruptible, list, python, refused, si};
 
-/// What a force-depth curve says of a gel: the answer of palpate calibrate for one curve, with the keys of its JSON, in SI, in a
-/// dictionary; and phantom, the Phantom with the moduli that were found, or None.
-///
-/// depths_mm: shape (n,), in mm, growing into the gel from any zero; forces_n: shape (n,), in N; times_s: shape (n,), in s, or None.
-/// phantom: the gel and the probe, or None for an empirical law. layers: numbers of the layers whose moduli are found, or none for one factor of
-/// all moduli. contact_mm: where the probe touches the gel, or None to estimate it.
+/// What a force-depth curve says of a gel: the answer of palpate calibrate for one curve.
+#[doc = sections!(
+    depths_mm: "array_like, shape (n,)" = "Depths that grow into the gel from any zero, mm.",
+    forces_n: "array_like, shape (n,)" = "Normal forces, N.",
+    times_s: "array_like, shape (n,), optional" = "Times of the samples, for relaxation, s.",
+    phantom: "Phantom, optional" = "The gel and the probe; by default an empirical law is fitted.",
+    layers: "sequence of int, optional" = "Layers, from 0, whose moduli are found; by default one factor of all moduli.",
+    lateral_mm: "float, optional" = "Where the probe goes down, mm.",
+    contact_mm: "float, optional" = "Where it touches the gel, on the depths, mm; by default it is estimated.",
+    mesh_mm;
+    "dict" = "The JSON of palpate calibrate, in SI, with cause and remedy; and phantom, with the moduli that were found, or None.";
+    "No curve, or a layer that the phantom does not have."
+)]
 // Implements: PYT-031.
 #[pyfunction]
 #[pyo3(signature = (depths_mm, forces_n, times_s=None, phantom=None, layers=vec![], lateral_mm=0.0, contact_mm=None, mesh_mm=0.5),

@@ -12,6 +12,7 @@ use palpate::decimal::{format_scaled, parse_scaled};
 use palpate::force::Force;
 use palpate::refusal::{Refusal, one_line};
 use palpate::stats::NumericError;
+use palpate::trace::Cause;
 use pyo3::PyClass;
 use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
@@ -236,10 +237,7 @@ impl<'py> Records<'py> {
     /// Numbers, `each` of every record, as Python gets them: a float, or an array without the axis of the records, for one record.
     pub fn answer(&self, py: Python<'py>, each: &[usize], values: Vec<f64>) -> PyResult<Py<PyAny>> {
         let shape: Vec<usize> = self.count.iter().chain(each).copied().collect();
-        Ok(match (&shape[..], &values[..]) {
-            ([], [value]) => value.into_pyobject(py)?.into_any().unbind(),
-            _ => array(py, &shape, values)?.unbind(),
-        })
+        Ok(number_or_array(py, &shape, values)?.unbind())
     }
 }
 
@@ -280,14 +278,14 @@ pub fn pair(name: &str, values: &Bound<PyAny>) -> PyResult<Force<f64>> {
     }
 }
 
-/// A function of numbers, for numbers or for arrays that NumPy broadcasts.
+/// A function of numbers, for numbers or for arrays that NumPy broadcasts: their shape, and what it gives row by row.
 ///
 /// Implements: PYT-003.
-pub fn each<'py, E: Display, const N: usize>(
+pub fn broadcast<'py, T, E: Display, const N: usize>(
     names: [&str; N],
     arguments: [&Bound<'py, PyAny>; N],
-    function: impl Fn([f64; N]) -> Result<f64, E>,
-) -> PyResult<Bound<'py, PyAny>> {
+    function: impl Fn([f64; N]) -> Result<T, E>,
+) -> PyResult<(Vec<usize>, Vec<T>)> {
     let py = arguments[0].py();
     for (name, argument) in names.iter().zip(arguments) {
         floats(name, argument)?;
@@ -301,21 +299,52 @@ pub fn each<'py, E: Display, const N: usize>(
     let arrays = arrays.collect::<PyResult<Vec<_>>>()?;
     let slices = arrays.iter().map(|array| array.as_slice());
     let slices = slices.collect::<Result<Vec<_>, _>>()?;
-    let at = |index: usize| function(std::array::from_fn(|argument| slices[argument][index]));
-    let shape = arrays[0].shape();
-    if shape.is_empty() {
-        let value = at(0).map_err(refused)?;
-        return Ok(value.into_pyobject(py)?.into_any());
+    let shape = arrays[0].shape().to_vec();
+    let at = |index: usize| {
+        let found = function(std::array::from_fn(|argument| slices[argument][index]));
+        found.map_err(|error| match shape.is_empty() {
+            true => refused(error),
+            false => refused(format!("element {index}: {error}")),
+        })
+    };
+    let values = (0..slices[0].len()).map(at).collect::<PyResult<_>>()?;
+    Ok((shape, values))
+}
+
+/// The same where it gives a number, as Python gets it.
+pub fn each<'py, E: Display, const N: usize>(
+    names: [&str; N],
+    arguments: [&Bound<'py, PyAny>; N],
+    function: impl Fn([f64; N]) -> Result<f64, E>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (shape, values) = broadcast(names, arguments, function)?;
+    number_or_array(arguments[0].py(), &shape, values)
+}
+
+/// A float without a shape, else an array.
+fn number_or_array<'py>(
+    py: Python<'py>,
+    shape: &[usize],
+    values: Vec<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    match (shape, &values[..]) {
+        ([], [value]) => Ok(value.into_pyobject(py)?.into_any()),
+        _ => array(py, shape, values),
     }
-    let named = |index| at(index).map_err(|error| refused(format!("element {index}: {error}")));
-    let values = (0..slices[0].len()).map(named);
-    array(py, shape, values.collect::<PyResult<_>>()?)
 }
 
 /// Anything that serde writes, as dictionaries, lists, numbers and texts.
 pub fn python<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
     let text = serde_json::to_string(value).map_err(refused)?;
     py.import("json")?.call_method1("loads", (text,))
+}
+
+/// Puts the words for the causes of an answer beside their codes.
+///
+/// Implements: PYT-049.
+pub fn give_reasons(answer: &Bound<PyAny>, causes: &[Cause]) -> PyResult<()> {
+    let reasons: Vec<String> = causes.iter().map(Cause::to_string).collect();
+    answer.set_item("reasons", reasons)
 }
 
 /// The JSON of dictionaries, lists, arrays, numbers and texts.

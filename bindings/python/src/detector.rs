@@ -50,11 +50,15 @@ fn same_length(records: &Records, samples: usize) -> PyResult<()> {
 
 /// theta, the log-likelihood ratio of an inclusion, of one record or many, in white noise.
 ///
-/// observed: forces in N, of shape (2, n), lateral and normal samples, or (k, 2, n) for k records; f0 and f1: what is expected
-/// without and with the inclusion, in N, of shape (2, n). noise_sd_n: the standard deviation of a sample in N, one for both channels
-/// or (lateral, normal). A float, or an array of shape (k,). A C-ordered array of 64-bit floats is read where it is; do not change
-/// it in another thread meanwhile.
-///
+/// A C-ordered array of 64-bit floats is read where it is; do not change it in another thread meanwhile.
+#[doc = sections!(
+    observed: "array_like, shape (2, n) or (k, 2, n)" = "Lateral and normal forces of a record, or of k, N.",
+    f0, f1, noise_sd_n;
+    "float, or ndarray, shape (k,)" = "theta of the record, or of each.";
+    "Other shapes, or a sample that is not finite, with its place."
+)]
+/// Examples
+/// --------
 /// >>> theta([[0, 0], [1.5, 1.75]], f0=[[0, 0], [1.5, 1.5]], f1=[[0, 0], [1.5, 2]], noise_sd_n=0.25)
 /// 0.0
 // Implements: PYT-020.
@@ -81,7 +85,12 @@ pub fn theta<'py>(
     observed.answer(py, &[], found)
 }
 
-/// What the matched filter says of one record: theta, y_n (lateral, normal) in N, gamma.
+/// What the matched filter says of one record.
+#[doc = sections!(
+    theta: "float" = "The log-likelihood ratio.",
+    y_n: "(float, float)" = "Y(0) of the paper's equation (5), lateral and normal, N.",
+    gamma: "float" = "The signal-to-noise ratio.";;
+)]
 #[pyclass(frozen, get_all, module = "palpate")]
 pub struct Statistic {
     /// The log-likelihood ratio.
@@ -120,7 +129,13 @@ impl Statistic {
     }
 }
 
-/// theta, y_n and gamma of one record: as theta, all of shape (2, n) in N.
+/// theta, y_n and gamma of one record.
+#[doc = sections!(
+    observed: "array_like, shape (2, n)" = "Lateral and normal forces of the record, N.",
+    f0, f1, noise_sd_n;
+    "Statistic" = "theta, y_n in N, gamma.";
+    "As theta."
+)]
 #[pyfunction]
 pub fn statistic(
     observed: Any<'_, '_>,
@@ -134,8 +149,12 @@ pub fn statistic(
     Ok(found.map_err(|error| of_record(None, error))?.into())
 }
 
-/// The matched filter of a template F_1 - F_0 of shape (2, n), lateral and normal samples in N, in white noise of standard
-/// deviation noise_sd_n a sample in N, one for both channels or (lateral, normal).
+/// The matched filter of a template in white noise.
+#[doc = sections!(
+    template: "array_like, shape (2, n)" = "F_1 - F_0, lateral and normal, N.",
+    noise_sd_n;;
+    "A template without signal, or one that is not finite."
+)]
 #[pyclass(frozen, module = "palpate")]
 pub struct MatchedFilter {
     template: Vec<f64>,
@@ -178,7 +197,12 @@ impl MatchedFilter {
         Ok(self.filter()?.sigma().into_array())
     }
 
-    /// theta, y_n and gamma of one residual F_p - F_0 of shape (2, n), N.
+    /// theta, y_n and gamma of one residual.
+    #[doc = sections!(
+        residual: "array_like, shape (2, n)" = "F_p - F_0, lateral and normal, N.";
+        "Statistic" = "theta, y_n in N, gamma.";
+        "Another length, or a sample that is not finite."
+    )]
     fn statistic(&self, residual: Any<'_, '_>) -> PyResult<Statistic> {
         let residual = Records::one("residual", residual)?;
         let found = self.filter()?.statistic(residual.force()?);
@@ -198,7 +222,12 @@ impl MatchedFilter {
         ))
     }
 
-    /// theta of residuals F_p - F_0 in N of shape (2, n) or (k, 2, n): a float, or an array of shape (k,).
+    /// theta of one residual or many.
+    #[doc = sections!(
+        residual: "array_like, shape (2, n) or (k, 2, n)" = "F_p - F_0, lateral and normal, N.";
+        "float, or ndarray, shape (k,)" = "theta of the record, or of each.";
+        "Another length, or a sample that is not finite, with its place."
+    )]
     fn theta<'py>(&self, py: Python<'py>, residual: Any<'_, 'py>) -> PyResult<Py<PyAny>> {
         let (residual, filter) = (Records::new("residual", residual)?, self.filter()?);
         same_length(&residual, filter.samples())?;
@@ -213,8 +242,14 @@ impl MatchedFilter {
     }
 }
 
-/// (theta, gamma) of a residual F_p - F_0 and a template F_1 - F_0, both of shape (2, n) in N, in noise of any covariance, of shape
-/// (2 n, 2 n) in N**2: the n lateral samples first, then the normal ones.
+/// theta and gamma in noise of any covariance.
+#[doc = sections!(
+    residual: "array_like, shape (2, n)" = "F_p - F_0, lateral and normal, N.",
+    template: "array_like, shape (2, n)" = "F_1 - F_0, lateral and normal, N.",
+    covariance: "array_like, shape (2 n, 2 n)" = "Of the n lateral samples, then the normal ones, N**2.";
+    "(float, float)" = "theta and gamma.";
+    "A covariance that is not symmetric and positive definite."
+)]
 #[pyfunction]
 pub fn theta_coloured(
     py: Python<'_>,
@@ -240,12 +275,17 @@ pub fn theta_coloured(
     })
 }
 
-/// What a record says beside signals of unknown amplitude, as a dictionary: t, gamma, gamma_nominal, residual, theta, false_alarm,
-/// miss, rank, degrees.
-///
-/// residual and template: arrays of shape (m,), all samples of both channels over the standard deviation of their noise (no unit);
-/// nuisances: an array of shape (p, m). level: "known", or "unknown" for noise whose size the record tells. bias: what a nuisance
-/// that is known within bounds may add to t; eta: the threshold of theta, in its unit.
+/// What a record says beside signals of unknown amplitude.
+#[doc = sections!(
+    residual: "array_like, shape (m,)" = "All samples of both channels over the standard deviation of their noise, no unit.",
+    template: "array_like, shape (m,)" = "The signal, alike.",
+    nuisances: "array_like, shape (p, m)" = "Signals of unknown amplitude, alike.",
+    level,
+    bias: "float, optional" = "What a nuisance that is known within bounds may add to t.",
+    eta: "float, optional" = "The threshold of theta.";
+    "dict" = "t, gamma, gamma_nominal, residual, theta, false_alarm, miss, rank, degrees.";
+    "A template that the nuisances explain, or too few samples."
+)]
 #[pyfunction]
 #[pyo3(signature = (residual, template, nuisances, level="known", bias=0.0, eta=0.0))]
 pub fn theta_nuisances<'py>(
@@ -292,11 +332,16 @@ pub fn theta_nuisances<'py>(
     python(py, &judge().map_err(refused)?)
 }
 
-/// theta of each of several signals beside nuisances, and what follows from them, as a dictionary: theta, posterior, theta_mixture,
-/// theta_max, hypothesis, posterior_h1.
-///
-/// residual: shape (m,); templates: (q, m); nuisances: (p, m), all over the standard deviation of their noise (no unit); level:
-/// "known" or "unknown"; prior: shape (q,), the probability of each signal given an inclusion; prior_h1: that of an inclusion.
+/// theta of each of several signals beside nuisances, and what follows from them.
+#[doc = sections!(
+    residual: "array_like, shape (m,)" = "All samples of both channels over the standard deviation of their noise, no unit.",
+    templates: "array_like, shape (q, m)" = "The signals, alike.",
+    nuisances: "array_like, shape (p, m)" = "Signals of unknown amplitude, alike.",
+    prior: "array_like, shape (q,)" = "Probability of each signal given an inclusion.",
+    level, own_prior_h1;
+    "dict" = "Lists theta and posterior; theta_mixture, theta_max, posterior_h1; hypothesis, the likeliest signal, from 0.";
+    "As theta_nuisances; a prior that does not add up to 1."
+)]
 #[pyfunction]
 #[pyo3(signature = (residual, templates, nuisances, prior, level="known", prior_h1=0.5))]
 pub fn bank_posterior<'py>(
@@ -318,12 +363,17 @@ pub fn bank_posterior<'py>(
     asked(py, "bank_posterior", &json(&arguments)?)
 }
 
-/// theta at every place of a template within a record, and the largest, as a dictionary.
+/// theta at every place of a template within a record, and the largest.
 ///
-/// residual: F_p - F_0 in N, of shape (2, n) or (k, 2, n) for k records; template: of shape (2, m), m <= n, N; noise_sd_n: in N, one
-/// for both channels or (lateral, normal). theta: shape (n - m + 1,), with the template's first sample on sample 0, 1, ... of the
-/// record; max_theta; gamma there; shift: that sample; refined_shift: the vertex of a parabola, in samples. For k records each
-/// has k as its first axis.
+/// theta has the shape (n - m + 1,), with the template's first sample on sample 0, 1, ... of the record; shift is that sample of the
+/// largest, refined_shift the vertex of a parabola, in samples. For k records each has k as its first axis.
+#[doc = sections!(
+    residual: "array_like, shape (2, n) or (k, 2, n)" = "F_p - F_0, lateral and normal, N.",
+    template: "array_like, shape (2, m), m <= n" = "F_1 - F_0, lateral and normal, N.",
+    noise_sd_n;
+    "dict" = "theta, max_theta, gamma there, shift, refined_shift.";
+    "A template that is longer, or a sample that is not finite, with its place."
+)]
 // Implements: PYT-020.
 #[pyfunction]
 pub fn scan<'py>(
@@ -368,9 +418,14 @@ pub fn scan<'py>(
 }
 
 /// theta of simulated records: F_0 or F_1 and white noise, judged by the matched filter of F_1 - F_0.
-///
-/// f0 and f1: forces in N, of shape (2, n); noise_sd_n: in N, one for both channels or (lateral, normal). An array of shape (trials,),
-/// the same for the same seed, whatever the number of threads. A seed of a NumPy generator: seed=rng.integers(2**63).
+#[doc = sections!(
+    f0, f1, noise_sd_n,
+    inclusion: "bool" = "Whether the records have the inclusion.",
+    trials: "int" = "How many records.",
+    seed: "int, optional" = "The same seed gives the same records; of a NumPy generator: rng.integers(2**63).";
+    "ndarray, shape (trials,)" = "theta of each record, for any number of threads.";
+    "As theta; more trials than there is memory for."
+)]
 // Implements: PYT-020.
 #[pyfunction]
 #[pyo3(signature = (f0, f1, noise_sd_n, inclusion, trials, seed=1999))]

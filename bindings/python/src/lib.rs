@@ -3,6 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `convert.rs` | errors, units, arrays, tables |
+//! | `docs.rs` | sections of docstrings |
 //! | `classes.rs`, `phantom.rs`, `map.rs` | phantoms and force maps |
 //! | `detector.rs`, `decision.rs` | the detector: records, and what follows from θ |
 //! | `batch.rs` | θ of many records |
@@ -14,6 +15,9 @@
 //! | `oracle.rs` | every operation of the oracle by name |
 //!
 //! Implements: PYT-002, PYT-009, PYT-046.
+
+#[macro_use]
+mod docs;
 
 mod bank;
 mod batch;

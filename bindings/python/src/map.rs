@@ -90,12 +90,14 @@ impl ForceMap {
     }
 
     /// The map in a file: measured forces if its name ends in .csv, else JSON as palpate solve writes it.
+    #[doc = sections!(path; "ForceMap" = "The map, N."; "No such file, or one that is no map, with line and key.")]
     #[staticmethod]
     fn read(path: PathBuf) -> PyResult<ForceMap> {
         Ok(ForceMap(force_map::ForceMap::read(&path).map_err(refused)?))
     }
 
     /// The map of a JSON text, as to_json gives it.
+    #[doc = sections!(text; "ForceMap" = "The map, with all of its digits."; "A text that is no map, with line and key.")]
     #[staticmethod]
     fn from_json(text: &str) -> PyResult<ForceMap> {
         let map = force_map::ForceMap::from_json(text, "text");
@@ -108,6 +110,7 @@ impl ForceMap {
     }
 
     /// Writes the map to a file: poses and forces alone (mm, N) if its name ends in .csv, else JSON, which keeps everything.
+    #[doc = sections!(path;;)]
     fn write(&self, path: PathBuf) -> PyResult<()> {
         let csv = path
             .extension()
@@ -159,7 +162,7 @@ impl ForceMap {
         self.0.phantom().cloned().map(Phantom)
     }
 
-    /// How good the computation was, as a dictionary with the keys of spec/force-map.md in SI units; None for measured forces.
+    /// How good the computation was, as a dictionary whose keys state their SI units; None for measured forces.
     #[getter]
     fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let certificate = self.0.certificate();
@@ -168,14 +171,24 @@ impl ForceMap {
             .transpose()
     }
 
-    /// The forces at a depth of the map, in mm: shape (2, n), lateral and normal, N.
+    /// The forces at a depth of the map.
+    #[doc = sections!(
+        depth_mm: "float" = "One of depths_mm, mm.";
+        "ndarray, shape (2, n)" = "Lateral and normal forces, N.";
+        "A depth that is not in the map, or a map without lateral forces."
+    )]
     fn row<'py>(&self, py: Python<'py>, depth_mm: f64) -> PyResult<Bound<'py, PyAny>> {
         let depth = si("depth_mm", depth_mm, -3)?;
         channels(py, self.0.table().row(depth).map_err(refused)?)
     }
 
-    /// The forces expected along a sweep at a depth, in mm, at laterals_mm, shape (n,), in mm: linear between the poses of the map, refused
-    /// beyond them. Shape (2, n), lateral and normal, N; (n,), normal alone, if the map has no lateral forces.
+    /// The forces expected along a sweep at one depth, linear between the poses of the map.
+    #[doc = sections!(
+        depth_mm,
+        laterals_mm: "array_like, shape (n,)" = "Lateral positions of the probe, mm.";
+        "ndarray, shape (2, n) or (n,)" = "Lateral and normal forces, or normal ones alone if the map has no others, N.";
+        "A pose beyond the map."
+    )]
     fn sweep<'py>(
         &self,
         py: Python<'py>,
@@ -187,8 +200,14 @@ impl ForceMap {
         channels(py, self.0.table().sweep(depth, &laterals).map_err(refused)?)
     }
 
-    /// The forces (lateral, normal) in N at poses in mm, numbers or arrays that broadcast: bilinear between the poses of the map, zero in
-    /// air (depth_mm <= 0), a line from the surface to the first depth, and refused beyond the map.
+    /// The forces at poses that broadcast: bilinear between the poses of the map, zero in air (depth_mm <= 0), and a line from the surface to
+    /// the first depth.
+    #[doc = sections!(
+        depth_mm: "float or array_like" = "Depth of the probe, mm.",
+        lateral_mm: "float or array_like" = "Lateral position of the probe, mm.";
+        "(float, float) or (ndarray, ndarray)" = "Lateral and normal force, N, of the shape of the poses.";
+        "A pose beyond the map, or a map without lateral forces."
+    )]
     fn force<'py>(
         &self,
         depth_mm: Any<'_, 'py>,
@@ -225,8 +244,12 @@ impl ForceMap {
         frame.call_method0("to_xarray")
     }
 
-    /// Draws the normal forces, N, over lateral position and depth, mm, and returns the axes: ax, or Matplotlib's current ones; needs Matplotlib.
-    /// of: what to draw instead, an array of shape (m, n), such as the difference from another map.
+    /// Draws the normal forces, N, over lateral position and depth, mm; needs Matplotlib.
+    #[doc = sections!(
+        ax,
+        of: "array_like, shape (m, n), optional" = "What to draw instead, such as the difference from another map, N.";
+        "matplotlib Axes" = "Where it was drawn.";
+    )]
     // Implements: PYT-045.
     #[pyo3(signature = (ax=None, of=None))]
     fn plot<'py>(

@@ -22,8 +22,17 @@ pub fn asked<'py>(py: Python<'py>, op: &str, arguments: &str) -> PyResult<Bound<
     }
 }
 
-/// A question to the oracle, whose operations and units are those of spec/oracle.md, as lists or arrays, numbers and texts by name:
-/// ask("probe_force", phantom="6.6", depth_m=0.004, lateral_m=0). The answer is a dictionary.
+/// A question to the oracle: any operation by its name, whose keys state their units.
+#[doc = sections!(
+    op: "str" = "The operation; capabilities lists them.",
+    arguments;
+    "dict" = "The answer, in SI.";
+    "What the oracle answers with an error."
+)]
+/// Examples
+/// --------
+/// >>> ask("two_afc", gamma=0)
+/// {'p_correct': 0.5}
 #[pyfunction]
 #[pyo3(signature = (op, **arguments))]
 pub fn ask<'py>(

@@ -2,18 +2,22 @@
 
 use std::cell::RefCell;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use palpate::fem::{Contact, FemError, Model, Pose};
+use palpate::force::Force;
 use palpate::phantom;
 use palpate::refusal::Refusal;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple, PyType};
+use pyo3::types::{PyDict, PyFloat, PyTuple, PyType};
+use rayon::prelude::*;
 use toml::Table;
 
 use crate::classes::{ForceMap, Phantom};
 use crate::convert::{
-    axis, doubt_metres, html, in_unit, interruptible, json, python, refused, remade, si, tell,
+    Any, array, axis, broadcast, doubt_metres, floats, html, in_unit, interruptible, json, python,
+    refused, remade, scaled, si, tell,
 };
 
 /// The contact law of a name.
@@ -25,6 +29,10 @@ pub fn contact(name: &str) -> PyResult<Contact> {
 }
 
 /// A force on the probe, N: lateral, normal = force.
+#[doc = sections!(
+    lateral_n: "float" = "Along +x, N.",
+    normal_n: "float" = "Out of the gel, N.";;
+)]
 #[pyclass(frozen, get_all, module = "palpate")]
 pub struct ProbeForce {
     /// Along +x, N.
@@ -109,6 +117,21 @@ fn model(phantom: &phantom::Phantom, mesh_mm: f64, contact_name: &str) -> PyResu
     Model::new(phantom, size, contact).map_err(refused)
 }
 
+/// The forces at poses, N, on all processors, a few at a time, so that this thread hears of Ctrl-C.
+fn solved(py: Python<'_>, model: Arc<Model>, poses: &[Pose]) -> PyResult<Vec<Force<f64>>> {
+    let mut forces = Vec::with_capacity(poses.len());
+    for few in poses.chunks(rayon::current_num_threads()) {
+        py.check_signals()?;
+        let (model, few) = (model.clone(), few.to_vec());
+        forces.extend(interruptible(py, move || {
+            let found = few.par_iter().map(|&pose| Ok(model.solve(pose)?.force));
+            let found: Result<Vec<_>, FemError> = found.collect();
+            found.map_err(refused)
+        })?);
+    }
+    Ok(forces)
+}
+
 impl Phantom {
     fn tables(&self) -> PyResult<Table> {
         self.0.to_toml().parse().map_err(refused)
@@ -127,7 +150,12 @@ impl Phantom {
         Phantom(phantom::Phantom::builtin(&text).map_err(refused)?).edited(edits)
     }
 
-    /// The phantom in the TOML text or file (a str with a line break is a text, else a path), in mm and kPa.
+    /// The phantom in a TOML text or file, in mm and kPa.
+    #[doc = sections!(
+        text_or_path: "str or PathLike" = "The text, if it is a str with a line break, else the file.";
+        "Phantom" = "What the text describes.";
+        "No such file, or a text that is no phantom, with line and key."
+    )]
     #[staticmethod]
     fn from_toml(text_or_path: &Bound<PyAny>) -> PyResult<Phantom> {
         let text = text_or_path.extract::<String>().ok();
@@ -139,12 +167,18 @@ impl Phantom {
     }
 
     /// The phantom of a dictionary with the keys of a phantom file, in mm and kPa.
+    #[doc = sections!(
+        tables: "dict" = "As to_dict gives it, mm and kPa.";
+        "Phantom" = "What the dictionary describes.";
+        "A dictionary that is no phantom, with the key."
+    )]
     #[staticmethod]
     fn from_dict(tables: &Bound<PyDict>) -> PyResult<Phantom> {
         of_tables(&serde_json::from_str(&json(tables)?).map_err(refused)?)
     }
 
     /// A copy with other numbers, named as in Phantom(name, ...), in mm and kPa.
+    #[doc = sections!(edits; "Phantom" = "The copy."; "A name or a number that the phantom cannot have.")]
     #[pyo3(signature = (**edits))]
     fn edited(&self, edits: Option<&Bound<PyDict>>) -> PyResult<Phantom> {
         let Some(edits) = edits else {
@@ -186,40 +220,61 @@ impl Phantom {
         Some(in_unit(self.0.inclusion_depth()?, 3))
     }
 
-    /// The force on the probe at one pose, in N; lengths in mm. mesh_mm=0.5 gives the element sizes of spec/fem.md; contact:
-    /// "deformed-normal" or "vertical-gap".
-    // Implements: PYT-010.
-    #[pyo3(signature = (depth_mm, lateral_mm=0.0, mesh_mm=0.5, contact="deformed-normal"))]
-    fn solve(
+    /// The force on the probe at a pose, or at poses that broadcast, by finite elements.
+    #[doc = sections!(
+        depth_mm: "float or array_like" = "Depth of the probe's lowest point below the surface, mm.",
+        lateral_mm: "float or array_like, optional" = "Lateral position of the probe, mm.",
+        mesh_mm, contact;
+        "ProbeForce, or ndarray, shape (2, ...)" = "The force of one pose, or those of the shape of the poses, lateral ones first, N.";
+        "A pose that the probe cannot have, a mesh that is too fine, or no equilibrium."
+    )]
+    /// Examples
+    /// --------
+    /// >>> lateral, normal = Phantom("6.6").solve([2, 4], 0, mesh_mm=2)
+    /// >>> normal.shape
+    /// (2,)
+    // Implements: PYT-010, PYT-050.
+    #[pyo3(signature = (depth_mm, lateral_mm=None, mesh_mm=0.5, contact="deformed-normal"),
+        text_signature = "($self, depth_mm, lateral_mm=0.0, mesh_mm=0.5, contact='deformed-normal')")]
+    fn solve<'py>(
         &self,
-        py: Python<'_>,
-        depth_mm: f64,
-        lateral_mm: f64,
+        py: Python<'py>,
+        depth_mm: Any<'_, 'py>,
+        lateral_mm: Option<Any<'_, 'py>>,
         mesh_mm: f64,
         contact: &str,
-    ) -> PyResult<ProbeForce> {
-        doubt_metres(py, "depth_mm", &[depth_mm])?;
-        let depth = si("depth_mm", depth_mm, -3)?;
-        let lateral = si("lateral_mm", lateral_mm, -3)?;
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let middle = PyFloat::new(py, 0.0).into_any();
+        let arguments = [depth_mm, lateral_mm.unwrap_or(&middle)];
+        let names = ["depth_mm", "lateral_mm"];
+        doubt_metres(py, names[0], floats(names[0], depth_mm)?.as_slice()?)?;
         // Before the model is made: a pose that cannot be is cheap to refuse.
-        self.0.check_pose(depth, lateral).map_err(refused)?;
+        let (shape, poses) = broadcast(names, arguments, |pose| {
+            let [depth, lateral] = [0, 1].map(|axis| scaled(names[axis], pose[axis], -3));
+            let (depth, lateral) = (depth?, lateral?);
+            self.0.check_pose(depth, lateral)?;
+            Ok::<Pose, Refusal>(Pose { depth, lateral })
+        })?;
         let (phantom, contact) = (self.0.clone(), contact.to_owned());
-        interruptible(py, move || {
-            let model = model(&phantom, mesh_mm, &contact)?;
-            let solution = model.solve(Pose { depth, lateral });
-            let force = solution.map_err(refused)?.force;
-            Ok(ProbeForce {
-                lateral_n: force.lateral,
-                normal_n: force.normal,
-            })
-        })
+        let model = interruptible(py, move || model(&phantom, mesh_mm, &contact))?;
+        let forces = solved(py, Arc::new(model), &poses)?;
+        if let ([], [force]) = (&shape[..], &forces[..]) {
+            let force = ProbeForce::new(force.lateral, force.normal);
+            return Ok(Bound::new(py, force)?.into_any());
+        }
+        let lateral = forces.iter().map(|force| force.lateral);
+        let both = lateral.chain(forces.iter().map(|force| force.normal));
+        array(py, &[&[2], &shape[..]].concat(), both.collect())
     }
 
-    /// The force map over depths_mm, shape (m,), and laterals_mm, shape (n,), both increasing, in mm; mesh_mm and contact as of
-    /// solve.
-    ///
-    /// progress is called with the numbers of poses that are solved, and of all; what it raises, such as KeyboardInterrupt, stops
-    /// the solve and is raised here.
+    /// The force map over depths and lateral positions, as solve but for the last digits, and faster.
+    #[doc = sections!(
+        depths_mm: "array_like, shape (m,)" = "Depths of the probe, increasing, mm.",
+        laterals_mm: "array_like, shape (n,)" = "Lateral positions, increasing, mm.",
+        mesh_mm, contact, progress;
+        "ForceMap" = "The forces, N, with their certificate.";
+        "As solve; an axis that does not increase."
+    )]
     // Implements: PYT-010.
     #[pyo3(signature = (depths_mm, laterals_mm, mesh_mm=0.5, contact="deformed-normal", progress=None))]
     fn map(

@@ -9,11 +9,15 @@ use pyo3::types::PyDict;
 use crate::convert::{Any, json, python, refused};
 use crate::oracle::asked;
 
-/// Pooled rates of right answers, gamma from them, and how far the subjects differ from one binomial, as a dictionary: pooled, rate,
-/// gamma, chi2, df.
+/// Pooled rates of right answers, gamma from them, and how far the subjects differ from one binomial.
 ///
-/// correct: right answers, whole numbers of shape (subjects, conditions), an array or a DataFrame, each of so many trials (no unit). Where
-/// the trials differ, analyse_answers has a column for them.
+/// Where the trials differ, analyse_answers has a column for them.
+#[doc = sections!(
+    correct: "array_like or DataFrame, shape (subjects, conditions)" = "Right answers, whole numbers.",
+    trials: "int" = "Trials of each.";
+    "dict" = "pooled, rate, gamma, chi2, df; no unit.";
+    "Counts that are no whole numbers up to the trials."
+)]
 #[pyfunction]
 pub fn count_analysis<'py>(
     correct: &Bound<'py, PyAny>,
@@ -25,11 +29,12 @@ pub fn count_analysis<'py>(
     asked(correct.py(), "count_analysis", &json(&arguments)?)
 }
 
-/// The analysis of a table of answers as a dictionary: confidence, conditions, comparisons; intervals, gamma, dispersion of the
-/// subjects, share over depth. Depths are in m.
-///
-/// table: a CSV file or a DataFrame (subject, condition, trials and a column for each inclusion); without it Table 1 of the paper, and then
-/// also noise_levels, the noise of its section 5, in N.
+/// The analysis of a table of answers: intervals, gamma, dispersion of the subjects, share over depth.
+#[doc = sections!(
+    table: "str, PathLike or DataFrame, optional" = "subject, condition, trials and a column for each inclusion; by default Table 1 of the paper.";
+    "dict" = "confidence, conditions, comparisons, depths in m; of the paper also noise_levels, the noise of its section 5, N.";
+    "A table that is none, with line and column."
+)]
 #[pyfunction]
 #[pyo3(signature = (table=None))]
 pub fn analyse_answers<'py>(

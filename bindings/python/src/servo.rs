@@ -15,6 +15,7 @@ fn single(name: &str, value: f64, power: i32) -> PyResult<f32> {
 }
 
 /// The table that the servo kernel plays: the forces of a force map (N over m) in single precision, with the surface in front.
+#[doc = sections!(map: "ForceMap" = "Both forces, N.";; "A map without lateral forces, or beyond what the kernel plays.")]
 #[pyclass(frozen, module = "palpate")]
 pub struct ServoTable {
     table: LoadedTable,
@@ -29,8 +30,8 @@ impl ServoTable {
         Ok(ServoTable { table, map })
     }
 
-    /// The force (lateral, normal) in N at a pose in mm, that of ForceMap.force as the kernel computes it in single precision. What the kernel plays
-    /// beyond the map, step says.
+    /// The force of ForceMap.force as the kernel computes it in single precision. What the kernel plays beyond the map, step says.
+    #[doc = sections!(depth_mm, lateral_mm; "(float, float)" = "Lateral and normal force, N."; "A pose beyond the map.")]
     // Implements: PYT-040.
     fn force(&self, depth_mm: f64, lateral_mm: f64) -> PyResult<(f32, f32)> {
         let depth = single("depth_mm", depth_mm, -3)?;
@@ -58,8 +59,14 @@ impl ServoTable {
     }
 }
 
-/// What commands must keep to: the largest force of a component, N; its growth in a cycle, N; its fall in a cycle, N, which is at least the growth and
-/// 1/16 of the largest force; and the longest run of cycles without a fresh sample, 1 to 100.
+/// What commands must keep to.
+#[doc = sections!(
+    force_n: "float" = "The largest force of a component, N.",
+    slew_n: "float" = "Its largest growth in a cycle, N.",
+    release_n: "float" = "Its largest fall in a cycle, at least slew_n and 1/16 of force_n, N.",
+    watchdog: "int" = "The longest run of cycles without a fresh sample, 1 to 100.";;
+    "Limits that the kernel does not keep to."
+)]
 #[pyclass(frozen, module = "palpate")]
 pub struct Limits(servo::Limits);
 
@@ -86,8 +93,13 @@ impl Limits {
     }
 }
 
-/// One report of the device: its number modulo 65536, the pose in mm, whether the deadman switch is held, and whether the device
-/// reports a fault. A pose may be NaN or infinite: the kernel makes a fault of it.
+/// One report of the device. A pose may be NaN or infinite: the kernel makes a fault of it.
+#[doc = sections!(
+    sequence: "int" = "The number of the report, modulo 65536.",
+    depth_mm, lateral_mm,
+    deadman: "bool" = "Whether the deadman switch is held.",
+    device_fault: "bool, optional" = "Whether the device reports a fault.";;
+)]
 #[pyclass(frozen, module = "palpate")]
 pub struct Sample(servo::Sample);
 
@@ -202,11 +214,20 @@ impl ServoState {
     }
 }
 
-/// One cycle of the servo kernel: (next state, force (lateral, normal) in N, playing), where playing says that the force follows the
-/// table. sample: the newest report, None if none came; request: "none", "arm" or "disarm".
+/// One cycle of the servo kernel.
 ///
-/// To arm, ask in one cycle after the first, with a fresh sample and the deadman switch not held; then hold it:
-///
+/// To arm, ask in one cycle after the first, with a fresh sample and the deadman switch not held; then hold it.
+#[doc = sections!(
+    table: "ServoTable" = "What is played.",
+    limits: "Limits" = "What commands must keep to.",
+    state: "ServoState" = "What the last cycle left.",
+    sample: "Sample, optional" = "The newest report; None if none came.",
+    request: "str, optional" = "\"none\", \"arm\" or \"disarm\".";
+    "(ServoState, [float, float], bool)" = "The next state; lateral and normal force, N; whether the force follows the table.";
+    "Another request."
+)]
+/// Examples
+/// --------
 /// >>> table = ServoTable(Phantom("none").map([1, 4], [-5, 0, 5], mesh_mm=2))
 /// >>> limits, state = Limits(3, 0.05, 0.25, 5), ServoState()
 /// >>> for cycle in range(100):

@@ -6,12 +6,16 @@ use palpate::trace::Unknown;
 use pyo3::prelude::*;
 
 use crate::bank::{Bank, chosen};
-use crate::convert::{Any, Names, list, pair, python, refused, si};
+use crate::convert::{Any, Names, give_reasons, list, pair, python, refused, si};
 
-/// Watcher(bank, noise_sd_n) judges a sweep against a bank while it is taken, as palpate watch does. noise_sd_n: of a sample in N, one for
-/// both channels or (lateral, normal). unknown: what is fitted, of offset, drift, gain and depth. max_false_alarm, max_miss: the rates of
-/// false answers, however often one looks. prior: shape (maps,), of each map given an inclusion; prior_h1: of an inclusion. zeroed: whether
-/// the sensor was set to zero on the gel.
+/// A sweep that is judged against a bank while it is taken, as palpate watch does; the rates of error hold however often one looks.
+#[doc = sections!(
+    bank: "Bank" = "The inclusions that may be there.",
+    noise_sd_n,
+    unknown: "str or sequence of str, optional" = "What is fitted, of offset, drift, gain and depth.",
+    own_max_false_alarm, own_max_miss, prior, own_prior_h1, zeroed;;
+    "A name or a number that makes no sense, or a prior that does not add up to 1."
+)]
 #[pyclass(module = "palpate")]
 pub struct Watcher {
     watcher: Inner,
@@ -47,9 +51,15 @@ impl Watcher {
         Ok(Watcher { watcher })
     }
 
-    /// Adds a sample and returns what all samples so far say, a dictionary with the keys of palpate watch, in SI (posterior_h1, decision,
-    /// likeliest, open_positions_m ...). position_mm in mm, the forces in N, without a lateral one if the sensor has none; depth_mm of the sample,
-    /// in mm, for a bank of several depths of the probe; a NaN is missing.
+    /// Adds a sample, of which a NaN is missing, and tells what all so far say.
+    #[doc = sections!(
+        position_mm: "float" = "Lateral position, mm.",
+        normal_force_n: "float" = "Normal force out of the gel, N.",
+        lateral_force_n: "float, optional" = "Lateral force along +x, if the sensor has it, N.",
+        depth_mm: "float, optional" = "Depth of the sample, for a bank of several depths of the probe, mm.";
+        "dict" = "The JSON of palpate watch, in SI (posterior_h1, decision, likeliest ...), and reasons, the words for causes.";
+        "An infinity, or a force or a depth that other samples do not have."
+    )]
     #[pyo3(signature = (position_mm, normal_force_n, lateral_force_n=None, depth_mm=None))]
     fn push<'py>(
         &mut self,
@@ -69,6 +79,9 @@ impl Watcher {
             .transpose()?;
         let pushed = (self.watcher).push_at(x, depth, lateral_force_n, normal_force_n);
         let answer = pushed.and_then(|()| self.watcher.answer());
-        python(py, &answer.map_err(refused)?)
+        let answer = answer.map_err(refused)?;
+        let told = python(py, &answer)?;
+        give_reasons(&told, &answer.causes)?;
+        Ok(told)
     }
 }

@@ -1,4 +1,4 @@
-"""Banks and counts of answers. Checks PYT-002, PYT-005, PYT-010, PYT-032, PYT-041."""
+"""Banks and counts of answers. Checks PYT-002, PYT-005, PYT-010, PYT-032, PYT-041, PYT-049."""
 
 import json
 import math
@@ -79,9 +79,19 @@ def test_places_have_the_columns_of_the_axes(bank):
 def test_another_unit_sign_or_width_has_no_answer_but_a_cause(bank):
     x = np.linspace(-8, 8, 161)
     gel = noisy(bank.reference.sweep(4, x))
-    for positions, forces, cause in ((x, 1000 * gel, "force_unit"), (x, 102 * gel, "force_unit"), (x, -gel, "sign"), (x / 1000, gel, "narrow")):
+    for positions, forces, cause, cure in (
+        (x, 1000 * gel, "force_unit", "give them in N"),
+        (x, 102 * gel, "force_unit", "give them in N"),
+        (x, -gel, "sign", "reverse it"),
+        (x / 1000, gel, "narrow", "check the unit of the positions"),
+    ):
         for found in (bank.locate(positions, forces), bank.judge(positions, forces)):
             assert found["inclusion"] is None and found["posterior_h1"] is None and cause in found["causes"], (cause, found)
+            assert len(found["reasons"]) == len(found["causes"]) and cure in found["reasons"][found["causes"].index(cause)]
+    watcher = palpate.Watcher(bank, noise_sd_n=0.05)
+    found = [watcher.push(*sample) for sample in zip(x, 0 * x)][-1]
+    assert found["causes"][0] == "no_contact" and "check that the probe touches" in found["reasons"][0]
+    assert bank.judge(x, gel)["reasons"] == []
 
 
 def test_an_inclusion_is_judged_whatever_the_gel_does(bank):

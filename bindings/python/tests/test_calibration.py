@@ -1,4 +1,4 @@
-"""A force-depth curve as arrays. Checks PYT-031."""
+"""A force-depth curve as arrays. Checks PYT-031, PYT-049."""
 
 import numpy as np
 import palpate
@@ -30,6 +30,12 @@ def test_a_curve_of_air_has_no_estimate():
     depths = np.linspace(0, 4, 100)
     found = palpate.calibrate(depths, np.sin(np.arange(100) ** 2), depths, phantom=palpate.Phantom("none"))
     assert (found["cause"], found["contact"], found["phantom"]) == ("no_contact", None, None)
+
+
+def test_a_curve_that_begins_in_the_gel_says_what_to_do():
+    depths = np.linspace(1, 4, 150)
+    found = palpate.calibrate(depths, 0.1 * depths**2 + 2e-3 * np.random.default_rng(4).standard_normal(150))
+    assert found["cause"] == "no_air" and found["remedy"].endswith("begin it higher, or say where the probe touches")
 
 
 def test_what_is_no_curve_is_refused():

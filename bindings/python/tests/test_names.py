@@ -1,4 +1,4 @@
-"""Names, signatures, docstrings, and what is in the wheel. Checks PYT-001, PYT-009."""
+"""Names, signatures, docstrings, and what is in the wheel. Checks PYT-001, PYT-009, PYT-051."""
 
 import ast
 import doctest
@@ -7,6 +7,7 @@ import inspect
 import re
 from pathlib import Path
 
+import docstring_parser
 import numpy as np
 import palpate
 
@@ -74,6 +75,31 @@ def test_every_name_says_what_it_is_with_shape_and_unit():
         assert "Implements" not in text, name
         count += 1
     assert count > 70
+
+
+def test_every_parameter_and_answer_has_a_line_that_numpydoc_reads():
+    count = 0
+    for name, value in documented():
+        if not callable(value) or value is palpate.Refused:
+            continue
+        expected = [parameter for parameter in inspect.signature(value).parameters.values() if parameter.name != "self"]
+        text = docstring_parser.parse(value.__doc__, docstring_parser.DocstringStyle.NUMPYDOC)
+        told = {of.arg_name: of for of in text.params}
+        assert [of.lstrip("*") for of in told] == [parameter.name for parameter in expected], name
+        for parameter in expected:
+            of = [of for key, of in told.items() if key.lstrip("*") == parameter.name][0]
+            assert of.description and "\n" not in of.description and of.type_name, (name, parameter)
+            is_optional = parameter.default is not parameter.empty
+            assert is_optional == bool(of.is_optional), (name, parameter)
+            # A name that has a unit says so.
+            unit = re.search("_(mm|n|kpa|s)$", parameter.name)
+            if unit:
+                assert re.search({"mm": r"\bmm\b", "n": r"\bN\b", "kpa": r"\bkPa\b", "s": r"\bs\b"}[unit[1]], of.description), (name, parameter)
+        returns = text.returns and text.returns.type_name and text.returns.description
+        assert bool(returns) == (bool(expected) and not inspect.isclass(value) and not name.endswith(".write")), name
+        assert {of.type_name for of in text.raises} <= {"Refused"}, name
+        count += len(expected)
+    assert count > 150
 
 
 def test_the_examples_of_docstrings_print_what_they_show():

@@ -4,6 +4,7 @@ import copy
 import pickle
 import subprocess
 import sys
+import types
 import typing
 from pathlib import Path
 
@@ -95,12 +96,13 @@ def test_maps_and_answers_go_to_other_packages(bank, located):
 # PYT-046.
 def test_a_type_checker_knows_the_keys_of_answers(bank, located, tmp_path):
     stub = Path(palpate.__file__).with_name("__init__.pyi").read_text()
-    types = {}
-    exec(compile("\n".join(["from typing import *", "from numpy.typing import *", "import numpy as np", *typed(stub)]), "stub", "exec"), types)
+    known = {}
+    exec(compile("\n".join(["from typing import *", "from numpy.typing import *", "import numpy as np", *typed(stub)]), "stub", "exec"), known)
     judged = bank.judge(X, bank.maps[4].sweep(4, X), noise_sd_n=0.1)
     for name, answer in (
         ("_Located", located),
         ("_Judged", judged),
+        ("_Watched", palpate.Watcher(bank, 0.1).push(0, 1.5, 0)),
         ("_Parameters", located["mean"]),
         ("_Intervals", located["interval_95"]),
         ("_Axes", bank.axes),
@@ -109,13 +111,26 @@ def test_a_type_checker_knows_the_keys_of_answers(bank, located, tmp_path):
         ("_BankPosterior", palpate.bank_posterior([1, 2], [[1, 0]], [], [1])),
         ("_Counts", palpate.count_analysis([[29, 26], [27, 21]], 30)),
     ):
-        keys = types[name]
-        assert set(answer) <= set(typing.get_type_hints(keys, types)), name
-        assert set(answer) >= keys.__required_keys__, name
+        keys = known[name]
+        hints = typing.get_type_hints(keys, known)
+        assert set(hints) >= set(answer) >= keys.__required_keys__, name
+        assert not [(key, value) for key, value in answer.items() if not is_of(value, hints[key])], name
     program = tmp_path / "program.py"
-    program.write_text("import palpate\nanswer = palpate.Bank.read('b').locate([0], [0])\nanswer['estimate']['depth_mm'] + 1.0\nanswer['estmate']\n")
+    program.write_text("import palpate\nanswer = palpate.Bank.read('b').locate([0], [0])\nanswer['estimate']['depth_mm'] + 1.0\nanswer['estmate']\npalpate.Phantom('6.6').solve(4).normal_n + palpate.Phantom('6.6').solve([4])[1]\n")
     found = subprocess.run([sys.executable, "-m", "mypy", "--strict", program], capture_output=True, text=True, cwd=tmp_path).stdout
     assert 'program.py:4: error: TypedDict "_Located" has no key "estmate"' in found and "Found 1 error" in found, found
+
+
+def is_of(value, hint):
+    """Whether a value is of the type that the stub states."""
+    parts = typing.get_args(hint)
+    if hint is typing.Any or typing.is_typeddict(hint):
+        return hint is typing.Any or isinstance(value, dict)
+    if isinstance(hint, types.UnionType):
+        return any(is_of(value, part) for part in parts)
+    if typing.get_origin(hint) is list:
+        return isinstance(value, list) and all(is_of(part, parts[0]) for part in value)
+    return isinstance(value, (int, float) if hint is float else typing.get_origin(hint) or hint)
 
 
 def typed(stub):

@@ -1,4 +1,4 @@
-"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-002, PYT-010, PYT-040, PYT-042."""
+"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-002, PYT-010, PYT-040, PYT-042, PYT-050."""
 
 import _thread
 import json
@@ -33,6 +33,22 @@ def test_the_force_of_a_pose_is_that_of_the_oracle(phantom):
     assert (force.normal_n, force.lateral_n) == (answer["normal_force_n"], answer["lateral_force_n"])
     # Away from the disc, and out of the gel.
     assert force.lateral_n > 0.01 and force.normal_n > 1
+
+
+# PYT-050.
+def test_forces_at_arrays_of_poses_are_those_of_each_alone(phantom):
+    depths, laterals = [[1], [4.0]], (-3, 0, 2.5)
+    found = phantom.solve(depths, laterals, **COARSE)
+    assert found.shape == (2, 2, 3)
+    for row, [depth] in enumerate(depths):
+        for column, lateral in enumerate(laterals):
+            assert tuple(found[:, row, column]) == tuple(phantom.solve(depth, lateral, **COARSE))
+    assert np.array_equal(phantom.solve(np.array([1, 4]), **COARSE), found[:, :, 1])
+    assert phantom.solve([], **COARSE).shape == (2, 0)
+    with pytest.raises(palpate.Refused, match="^element 1: depth_mm = -1.0, but must be at least"):
+        phantom.solve([1, -1], **COARSE)
+    with pytest.raises(palpate.Refused, match="broadcast"):
+        phantom.solve([1, 2], [0, 1, 2], **COARSE)
 
 
 def test_lengths_are_read_as_the_decimals_that_they_are(tmp_path):
@@ -218,6 +234,7 @@ def test_metres_are_doubted(phantom):
     "call",
     [
         "palpate.Phantom('6.6').solve(4, 1, mesh_mm=0.13)",
+        "palpate.Phantom('6.6').solve(np.linspace(3, 4, 3000), 1, mesh_mm=1)",
         "palpate.simulate_theta(z, z + 0.01, 0.1, True, 20_000_000)",
         "palpate.theta_coloured(np.ones((2, 900)), np.ones((2, 900)), np.eye(1800))",
     ],

@@ -64,10 +64,10 @@ impl CurveCause {
                 "the force does not rise above offset, drift and noise; press deeper"
             }
             CurveCause::NoAir => {
-                "the curve does not begin above the gel; begin it higher, or give --contact"
+                "the curve does not begin above the gel; begin it higher, or say where the probe touches"
             }
             CurveCause::Misfit => {
-                "the best fit does not describe the curve; look at --figure, press less deep, or check the phantom"
+                "the best fit does not describe the curve; draw it, press less deep, or check the phantom"
             }
         }
     }

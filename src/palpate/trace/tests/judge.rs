@@ -425,6 +425,26 @@ fn a_record_that_cannot_be_judged_has_a_cause() {
     }
 }
 
+// Verifies: CLI-143, PYT-049.
+#[test]
+fn each_cause_says_what_to_do_without_an_option_of_the_command_line() {
+    use Cause::*;
+    let causes = [
+        Sign, ForceUnit, Level, Misfit, Coloured, Saturated, Glitches, NoContact, InAir, Narrow,
+        Exchanged,
+    ];
+    for cause in causes {
+        let words = cause.to_string();
+        assert_eq!(words.matches(": ").count(), 1, "{words}");
+        assert!(
+            !words.contains("--") && !words.contains("header"),
+            "{words}"
+        );
+    }
+    let both = "samples at the start or at the end are in air: leave them out; the record is too weak to tell an inclusion from what else may bend it";
+    assert_eq!(reasons(&[InAir, TooWeak]), both);
+}
+
 // Verifies: TRC-070.
 #[test]
 fn the_limits_of_chi_square() {
