@@ -54,6 +54,27 @@ impl Copy {
         }
     }
 
+    /// Writes a file; the one that was put aside if it is the same, for cargo goes by the time of a file.
+    pub fn write_or_take(&self, path: &str, text: &str) {
+        let aside = self.aside(path);
+        match fs::read_to_string(&aside) {
+            Ok(known) if known == text => fs::rename(aside, self.root.join(path)).unwrap(),
+            _ => self.write(path, text.as_bytes()),
+        }
+    }
+
+    /// Puts a file aside, and another text in its place.
+    pub fn put_aside(&self, path: &str, text: &str) {
+        let aside = self.aside(path);
+        fs::create_dir_all(aside.parent().unwrap()).unwrap();
+        fs::rename(self.root.join(path), aside).unwrap();
+        self.write(path, text.as_bytes());
+    }
+
+    fn aside(&self, path: &str) -> PathBuf {
+        self.root.join("target/aside").join(path)
+    }
+
     /// The text of a file.
     pub fn read(&self, path: &str) -> String {
         fs::read_to_string(self.root.join(path)).unwrap()

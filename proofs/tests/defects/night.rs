@@ -1,0 +1,315 @@
+//! The ledger, tried: which tests find each of its defects, and so how much the tests of this project find.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File, OpenOptions};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use palpate_core::stats::binomial::clopper_pearson;
+use serde_json::{Value, json};
+
+use crate::copy::{Copy, ROOT};
+use crate::list::{CLASSES, Entry, ledger};
+use crate::suite::Suite;
+use crate::switch::{SWITCH, switched};
+
+/// The crates: where their files are, their root files, and their packages. Parts of the project are told by the same beginnings.
+const CRATES: [(&str, &[&str], &str); 7] = [
+    ("src/core/", &["lib.rs"], "palpate-core"),
+    ("src/palpate/", &["lib.rs"], "palpate"),
+    ("src/paper/", &["lib.rs"], "palpate-paper"),
+    ("src/program/", &["lib.rs", "main.rs"], "palpate-program"),
+    (
+        "vectors/conform/src/",
+        &["lib.rs", "main.rs"],
+        "palpate-conform",
+    ),
+    ("bindings/c/src/", &["lib.rs"], "palpate-c"),
+    ("bindings/python/src/", &["lib.rs"], "palpate-python"),
+];
+
+/// The parts of the project, by the beginnings of their files.
+const PARTS: [(&str, &[&str]); 5] = [
+    ("core", &["src/core/"]),
+    ("library", &["src/palpate/"]),
+    ("paper", &["src/paper/"]),
+    ("program", &["src/program/"]),
+    ("bindings and vectors", &["bindings/", "vectors/"]),
+];
+
+/// The confidence of the interval of the power.
+const CONFIDENCE: f64 = 0.95;
+
+// Verifies: CON-011.
+#[test]
+fn what_is_shipped_has_no_switch() {
+    for folder in ["src", "bindings", "vectors"] {
+        let text = crate::sources(&Path::new(ROOT).join(folder));
+        assert!(text.len() > 10_000, "{folder}");
+        assert!(!text.contains("crate::planted(") && !text.contains(crate::switch::VARIABLE));
+    }
+    // And would have it, if it were planted there.
+    assert!(SWITCH.contains("fn planted(") && SWITCH.contains(crate::switch::VARIABLE));
+}
+
+#[test]
+#[ignore = "runs the tests once for each defect, an hour or more"]
+fn the_tests_find_the_defects_of_the_ledger() {
+    let entries = ledger();
+    let copy = Copy::new("ledger", &["."]);
+    let suite = Suite::new(&copy);
+    let mut report = Report::open();
+    let build = || suite.build().unwrap_or_else(|error| panic!("{error}"));
+    let (switched, alone) = with_switches(&copy, &entries, build);
+    println!("{} of {} are built alone", alone.len(), entries.len());
+    if report.lines.is_empty() {
+        let passes = [suite.failing("all()", None), suite.failing_in_python(None)];
+        assert_eq!(
+            passes,
+            [None, None],
+            "without a defect everything must pass"
+        );
+        report.begin();
+    }
+    // What is quick comes first, for all.
+    for find in [Found::by_own, Found::by_others] {
+        for &number in &switched {
+            let entry = &entries[number];
+            report.add(entry, || find(&suite, entry, Some(number)));
+        }
+    }
+    for entry in alone.iter().map(|&number| &entries[number]) {
+        let find = || {
+            build();
+            Found::by_own(&suite, entry, None).or_else(|| Found::by_others(&suite, entry, None))
+        };
+        report.add(entry, || copy.with(&entry.defect, find));
+    }
+    report.end(&entries);
+}
+
+/// Builds with all defects behind their switches, and has the sources as they were when the tests look at them. The defects that are, and
+/// those that cannot be.
+fn with_switches(copy: &Copy, entries: &[Entry], build: impl FnOnce()) -> (Vec<usize>, Vec<usize>) {
+    let root = |(folder, roots, _): &(&str, &'static [&str], _)| {
+        let folder = folder.to_string();
+        roots.iter().map(move |root| folder.clone() + root)
+    };
+    let roots: BTreeSet<String> = CRATES.iter().flat_map(root).collect();
+    let files = entries.iter().map(|entry| entry.defect.file.clone());
+    let (mut alone, mut sound) = (Vec::new(), Vec::new());
+    for file in files.chain(roots.clone()).collect::<BTreeSet<_>>() {
+        let text = copy.read(&file);
+        let of_file = |number: &usize| entries[*number].defect.file == file;
+        let numbers: Vec<usize> = (0..entries.len()).filter(of_file).collect();
+        let (mut planted, others) = switched(&text, entries, &numbers);
+        alone.extend(others);
+        if roots.contains(&file) {
+            planted += SWITCH;
+        }
+        if planted != text {
+            copy.write_or_take(&file, &planted);
+            sound.push((file, text));
+        }
+    }
+    build();
+    for (file, text) in sound {
+        copy.put_aside(&file, &text);
+    }
+    let is_switched = |number: &usize| !alone.contains(number);
+    ((0..entries.len()).filter(is_switched).collect(), alone)
+}
+
+/// Which test finds a defect, if one does.
+enum Found {
+    /// One of its own module.
+    Own(String),
+    /// Another.
+    Others(String),
+    Nothing,
+}
+
+impl Found {
+    /// Tries the tests of its own module.
+    fn by_own(suite: &Suite<'_>, entry: &Entry, planted: Option<usize>) -> Option<Found> {
+        let [package, own] = own_tests(&entry.defect.file);
+        let found = match &*package {
+            "palpate-python" => suite.failing_in_python(planted),
+            _ => suite.failing(&own, planted),
+        };
+        found.map(Found::Own)
+    }
+
+    /// Tries the test that it names, then whatever depends on its package.
+    fn by_others(suite: &Suite<'_>, entry: &Entry, planted: Option<usize>) -> Option<Found> {
+        let [package, own] = own_tests(&entry.defect.file);
+        let named = format!("test(/(^|::){}$/)", entry.defect.found_by.replace('?', "^"));
+        let others = format!("rdeps(={package}) - ({own})");
+        let filters = [
+            format!("({others}) & {named}"),
+            format!("({others}) - {named}"),
+        ];
+        let found = filters
+            .iter()
+            .find_map(|filter| suite.failing(filter, planted));
+        Some(found.map_or(Found::Nothing, Found::Others))
+    }
+}
+
+/// The package of a file, and the tests of its module: those of its folder, and those that see it from outside, `NAME_command` and the like.
+/// The library for C and the judge of vectors are of one piece each; the harnesses are the core's own.
+fn own_tests(file: &str) -> [String; 2] {
+    let of_file = |(folder, ..): &&(&str, _, _)| file.starts_with(folder);
+    let (folder, _, package) = CRATES.iter().find(of_file).expect(file);
+    let path = file[folder.len()..].trim_start_matches("templates/");
+    let module = path.split(['/', '.']).next().unwrap();
+    let outside = format!("package(=palpate-tests) & test(/^{module}_/)");
+    let own = match *package {
+        "palpate-conform" | "palpate-c" | "palpate-python" => format!("package(={package})"),
+        "palpate-core" => format!(
+            "package(={package}) & test(/^{module}::/) | {outside} | package(=palpate-proofs) & kind(lib)"
+        ),
+        _ => format!("package(={package}) & test(/^{module}::/) | {outside}"),
+    };
+    [package.to_string(), own]
+}
+
+/// What was found, a line for each defect as soon as it is known, so that a run that was stopped goes on.
+struct Report {
+    path: PathBuf,
+    commit: String,
+    lines: Vec<Value>,
+}
+
+impl Report {
+    /// Goes on with the lines of the same commit.
+    fn open() -> Report {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ledger.jsonl");
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        let mut lines = text
+            .lines()
+            .map(|line| serde_json::from_str(line).unwrap())
+            .collect::<Vec<Value>>();
+        let commit = commit();
+        if lines.first().is_none_or(|first| first["commit"] != *commit) {
+            lines.clear();
+        }
+        Report {
+            path,
+            commit,
+            lines,
+        }
+    }
+
+    /// Without a defect everything has passed.
+    fn begin(&mut self) {
+        File::create(&self.path).unwrap();
+        self.push(json!({"commit": self.commit}));
+    }
+
+    fn push(&mut self, line: Value) {
+        let mut file = OpenOptions::new().append(true).open(&self.path).unwrap();
+        writeln!(file, "{line}").unwrap();
+        self.lines.push(line);
+    }
+
+    /// Adds what is found, unless it is known.
+    fn add(&mut self, entry: &Entry, find: impl FnOnce() -> Option<Found>) {
+        let Entry {
+            defect,
+            class,
+            is_alone,
+            is_drawn,
+        } = entry;
+        let is_known = |line: &Value| line["file"] == *defect.file && line["name"] == *defect.name;
+        if self.lines.iter().any(is_known) {
+            return;
+        }
+        let (found, test) = match find() {
+            Some(Found::Own(test)) => ("own", test),
+            Some(Found::Others(test)) => ("others", test),
+            Some(Found::Nothing) => ("nothing", String::new()),
+            None => return,
+        };
+        println!("{found:8} {}: {} {test}", defect.file, defect.name);
+        self.push(json!({
+            "file": defect.file, "name": defect.name, "class": class, "is_alone": is_alone, "is_drawn": is_drawn,
+            "found": found, "test": test,
+        }));
+    }
+
+    /// Writes `ledger.json`, and fails if a defect that names its test was not found.
+    fn end(&self, entries: &[Entry]) {
+        let power = power(&self.lines[1..]);
+        for line in &power {
+            println!("{line}");
+        }
+        let report = json!({"commit": self.commit, "confidence": CONFIDENCE, "power": power, "defects": self.lines[1..]});
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("ledger.json");
+        fs::write(path, format!("{report:#}\n")).unwrap();
+        let is_lost = |entry: &&Entry| {
+            let mut lines = self
+                .lines
+                .iter()
+                .filter(|line| line["name"] == *entry.defect.name);
+            entry.defect.found_by != "?" && lines.any(|line| line["found"] == "nothing")
+        };
+        let lost: Vec<_> = entries
+            .iter()
+            .filter(is_lost)
+            .map(|entry| &entry.defect.name)
+            .collect();
+        assert_eq!(lost, [""; 0], "these name a test, and nothing finds them");
+    }
+}
+
+/// The share of the drawn defects that is found, of all and by part and class.
+fn power(lines: &[Value]) -> Vec<Value> {
+    let drawn: Vec<&Value> = lines
+        .iter()
+        .filter(|line| line["is_drawn"] == true)
+        .collect();
+    let mut power = Vec::new();
+    let mut add = |of: &str, is_in: &dyn Fn(&Value) -> bool| {
+        let among: Vec<&&Value> = drawn.iter().filter(|line| is_in(line)).collect();
+        let found = among
+            .iter()
+            .filter(|line| line["found"] != "nothing")
+            .count();
+        let own = among.iter().filter(|line| line["found"] == "own").count();
+        if let Ok(bounds) = clopper_pearson(found as u64, among.len() as u64, CONFIDENCE) {
+            power.push(json!({"of": of, "defects": among.len(), "found": found, "by_own": own, "lower": bounds.lower, "upper": bounds.upper}));
+        }
+    };
+    add("all", &|_| true);
+    for (part, folders) in PARTS {
+        let file = |line: &Value| line["file"].as_str().unwrap_or_default().to_string();
+        add(part, &|line| {
+            folders.iter().any(|folder| file(line).starts_with(folder))
+        });
+    }
+    for class in CLASSES {
+        add(class, &|line| line["class"] == class);
+    }
+    power
+}
+
+/// The commit, and whether the sources differ from it.
+fn commit() -> String {
+    let git = |arguments: &str| {
+        let output = Command::new("git")
+            .current_dir(ROOT)
+            .args(arguments.split(' '))
+            .output()
+            .unwrap();
+        String::from_utf8(output.stdout).unwrap().trim().to_string()
+    };
+    let changes = git("status --porcelain --untracked-files=no");
+    let suffix = if changes.is_empty() {
+        ""
+    } else {
+        " with changes"
+    };
+    git("rev-parse HEAD") + suffix
+}
