@@ -14,29 +14,37 @@ use crate::list::{CLASSES, Entry, ledger};
 use crate::suite::Suite;
 use crate::switch::{SWITCH, switched};
 
-/// The crates: where their files are, their root files, and their packages. Parts of the project are told by the same beginnings.
-const CRATES: [(&str, &[&str], &str); 7] = [
-    ("src/core/", &["lib.rs"], "palpate-core"),
-    ("src/palpate/", &["lib.rs"], "palpate"),
-    ("src/paper/", &["lib.rs"], "palpate-paper"),
-    ("src/program/", &["lib.rs", "main.rs"], "palpate-program"),
-    (
+/// The crates: where their files are, their root files, their packages, and the parts of the project that they are.
+const CRATES: [[&str; 4]; 7] = [
+    ["src/core/", "lib.rs", "palpate-core", "core"],
+    ["src/palpate/", "lib.rs", "palpate", "library"],
+    ["src/paper/", "lib.rs", "palpate-paper", "paper"],
+    [
+        "src/program/",
+        "lib.rs main.rs",
+        "palpate-program",
+        "program",
+    ],
+    [
         "vectors/conform/src/",
-        &["lib.rs", "main.rs"],
+        "lib.rs main.rs",
         "palpate-conform",
-    ),
-    ("bindings/c/src/", &["lib.rs"], "palpate-c"),
-    ("bindings/python/src/", &["lib.rs"], "palpate-python"),
+        OUTSIDE,
+    ],
+    ["bindings/c/src/", "lib.rs", "palpate-c", OUTSIDE],
+    ["bindings/python/src/", "lib.rs", "palpate-python", OUTSIDE],
 ];
 
-/// The parts of the project, by the beginnings of their files.
-const PARTS: [(&str, &[&str]); 5] = [
-    ("core", &["src/core/"]),
-    ("library", &["src/palpate/"]),
-    ("paper", &["src/paper/"]),
-    ("program", &["src/program/"]),
-    ("bindings and vectors", &["bindings/", "vectors/"]),
-];
+/// What others use the product by.
+const OUTSIDE: &str = "bindings and vectors";
+
+/// The crate of a file.
+fn crate_of(file: &str) -> [&'static str; 4] {
+    let mut crates = CRATES.into_iter();
+    crates
+        .find(|[folder, ..]| file.starts_with(folder))
+        .expect(file)
+}
 
 /// The confidence of the interval of the power.
 const CONFIDENCE: f64 = 0.95;
@@ -61,7 +69,7 @@ fn the_tests_find_the_defects_of_the_ledger() {
     let suite = Suite::new(&copy);
     let mut report = Report::open();
     let build = || suite.build().unwrap_or_else(|error| panic!("{error}"));
-    let (switched, alone) = with_switches(&copy, &entries, build);
+    let (mut switched, alone) = with_switches(&copy, &entries, build);
     println!("{} of {} are built alone", alone.len(), entries.len());
     if report.lines.is_empty() {
         let passes = [suite.failing("all()", None), suite.failing_in_python(None)];
@@ -72,8 +80,9 @@ fn the_tests_find_the_defects_of_the_ledger() {
         );
         report.begin();
     }
-    // What is quick comes first, for all.
-    for find in [Found::by_own, Found::by_others] {
+    // What states the power comes first, and what is quick.
+    switched.sort_by_key(|&number| !entries[number].is_drawn);
+    for find in [by_own, by_others] {
         for &number in &switched {
             let entry = &entries[number];
             report.add(entry, || find(&suite, entry, Some(number)));
@@ -82,7 +91,7 @@ fn the_tests_find_the_defects_of_the_ledger() {
     for entry in alone.iter().map(|&number| &entries[number]) {
         let find = || {
             build();
-            Found::by_own(&suite, entry, None).or_else(|| Found::by_others(&suite, entry, None))
+            by_own(&suite, entry, None).or_else(|| by_others(&suite, entry, None))
         };
         report.add(entry, || copy.with(&entry.defect, find));
     }
@@ -92,11 +101,10 @@ fn the_tests_find_the_defects_of_the_ledger() {
 /// Builds with all defects behind their switches, and has the sources as they were when the tests look at them. The defects that are, and
 /// those that cannot be.
 fn with_switches(copy: &Copy, entries: &[Entry], build: impl FnOnce()) -> (Vec<usize>, Vec<usize>) {
-    let root = |(folder, roots, _): &(&str, &'static [&str], _)| {
-        let folder = folder.to_string();
-        roots.iter().map(move |root| folder.clone() + root)
+    let root = |[folder, roots, ..]: [&'static str; 4]| {
+        roots.split(' ').map(move |root| format!("{folder}{root}"))
     };
-    let roots: BTreeSet<String> = CRATES.iter().flat_map(root).collect();
+    let roots: BTreeSet<String> = CRATES.into_iter().flat_map(root).collect();
     let files = entries.iter().map(|entry| entry.defect.file.clone());
     let (mut alone, mut sound) = (Vec::new(), Vec::new());
     for file in files.chain(roots.clone()).collect::<BTreeSet<_>>() {
@@ -121,58 +129,49 @@ fn with_switches(copy: &Copy, entries: &[Entry], build: impl FnOnce()) -> (Vec<u
     ((0..entries.len()).filter(is_switched).collect(), alone)
 }
 
-/// Which test finds a defect, if one does.
-enum Found {
-    /// One of its own module.
-    Own(String),
-    /// Another.
-    Others(String),
-    Nothing,
+/// Who found a defect, and the test.
+type Found = Option<(&'static str, String)>;
+
+/// Tries the tests of its own module.
+fn by_own(suite: &Suite<'_>, entry: &Entry, planted: Option<usize>) -> Found {
+    let (package, own) = own_tests(&entry.defect.file);
+    let test = match package {
+        "palpate-python" => suite.failing_in_python(planted),
+        _ => suite.failing(&own, planted),
+    };
+    test.map(|test| ("own", test))
 }
 
-impl Found {
-    /// Tries the tests of its own module.
-    fn by_own(suite: &Suite<'_>, entry: &Entry, planted: Option<usize>) -> Option<Found> {
-        let [package, own] = own_tests(&entry.defect.file);
-        let found = match &*package {
-            "palpate-python" => suite.failing_in_python(planted),
-            _ => suite.failing(&own, planted),
-        };
-        found.map(Found::Own)
-    }
-
-    /// Tries the test that it names, then whatever depends on its package.
-    fn by_others(suite: &Suite<'_>, entry: &Entry, planted: Option<usize>) -> Option<Found> {
-        let [package, own] = own_tests(&entry.defect.file);
-        let named = format!("test(/(^|::){}$/)", entry.defect.found_by.replace('?', "^"));
-        let others = format!("rdeps(={package}) - ({own})");
-        let filters = [
-            format!("({others}) & {named}"),
-            format!("({others}) - {named}"),
-        ];
-        let found = filters
-            .iter()
-            .find_map(|filter| suite.failing(filter, planted));
-        Some(found.map_or(Found::Nothing, Found::Others))
-    }
+/// Tries the test that it names, then whatever depends on its package.
+fn by_others(suite: &Suite<'_>, entry: &Entry, planted: Option<usize>) -> Found {
+    let (package, own) = own_tests(&entry.defect.file);
+    let named = format!("test(/(^|::){}$/)", entry.defect.found_by.replace('?', "^"));
+    let others = format!("rdeps(={package}) - ({own})");
+    let filters = [
+        format!("({others}) & {named}"),
+        format!("({others}) - {named}"),
+    ];
+    let test = filters
+        .iter()
+        .find_map(|filter| suite.failing(filter, planted));
+    Some(test.map_or(("nothing", String::new()), |test| ("others", test)))
 }
 
 /// The package of a file, and the tests of its module: those of its folder, and those that see it from outside, `NAME_command` and the like.
 /// The library for C and the judge of vectors are of one piece each; the harnesses are the core's own.
-fn own_tests(file: &str) -> [String; 2] {
-    let of_file = |(folder, ..): &&(&str, _, _)| file.starts_with(folder);
-    let (folder, _, package) = CRATES.iter().find(of_file).expect(file);
+fn own_tests(file: &str) -> (&'static str, String) {
+    let [folder, _, package, _] = crate_of(file);
     let path = file[folder.len()..].trim_start_matches("templates/");
     let module = path.split(['/', '.']).next().unwrap();
     let outside = format!("package(=palpate-tests) & test(/^{module}_/)");
-    let own = match *package {
+    let own = match package {
         "palpate-conform" | "palpate-c" | "palpate-python" => format!("package(={package})"),
         "palpate-core" => format!(
             "package(={package}) & test(/^{module}::/) | {outside} | package(=palpate-proofs) & kind(lib)"
         ),
         _ => format!("package(={package}) & test(/^{module}::/) | {outside}"),
     };
-    [package.to_string(), own]
+    (package, own)
 }
 
 /// What was found, a line for each defect as soon as it is known, so that a run that was stopped goes on.
@@ -215,7 +214,7 @@ impl Report {
     }
 
     /// Adds what is found, unless it is known.
-    fn add(&mut self, entry: &Entry, find: impl FnOnce() -> Option<Found>) {
+    fn add(&mut self, entry: &Entry, find: impl FnOnce() -> Found) {
         let Entry {
             defect,
             class,
@@ -226,12 +225,7 @@ impl Report {
         if self.lines.iter().any(is_known) {
             return;
         }
-        let (found, test) = match find() {
-            Some(Found::Own(test)) => ("own", test),
-            Some(Found::Others(test)) => ("others", test),
-            Some(Found::Nothing) => ("nothing", String::new()),
-            None => return,
-        };
+        let Some((found, test)) = find() else { return };
         println!("{found:8} {}: {} {test}", defect.file, defect.name);
         self.push(json!({
             "file": defect.file, "name": defect.name, "class": class, "is_alone": is_alone, "is_drawn": is_drawn,
@@ -248,19 +242,15 @@ impl Report {
         let report = json!({"commit": self.commit, "confidence": CONFIDENCE, "power": power, "defects": self.lines[1..]});
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("ledger.json");
         fs::write(path, format!("{report:#}\n")).unwrap();
-        let is_lost = |entry: &&Entry| {
-            let mut lines = self
-                .lines
-                .iter()
-                .filter(|line| line["name"] == *entry.defect.name);
-            entry.defect.found_by != "?" && lines.any(|line| line["found"] == "nothing")
+        let names_a_test = |line: &&Value| {
+            let mut named = entries.iter().filter(|entry| entry.defect.found_by != "?");
+            line["found"] == "nothing" && named.any(|entry| line["name"] == *entry.defect.name)
         };
-        let lost: Vec<_> = entries
-            .iter()
-            .filter(is_lost)
-            .map(|entry| &entry.defect.name)
-            .collect();
-        assert_eq!(lost, [""; 0], "these name a test, and nothing finds them");
+        let lost: Vec<_> = self.lines.iter().filter(names_a_test).collect();
+        assert!(
+            lost.is_empty(),
+            "these name a test, and nothing finds them: {lost:?}"
+        );
     }
 }
 
@@ -283,10 +273,13 @@ fn power(lines: &[Value]) -> Vec<Value> {
         }
     };
     add("all", &|_| true);
-    for (part, folders) in PARTS {
-        let file = |line: &Value| line["file"].as_str().unwrap_or_default().to_string();
+    for part in CRATES
+        .map(|[.., part]| part)
+        .into_iter()
+        .collect::<BTreeSet<_>>()
+    {
         add(part, &|line| {
-            folders.iter().any(|folder| file(line).starts_with(folder))
+            crate_of(line["file"].as_str().unwrap())[3] == part
         });
     }
     for class in CLASSES {
@@ -298,18 +291,14 @@ fn power(lines: &[Value]) -> Vec<Value> {
 /// The commit, and whether the sources differ from it.
 fn commit() -> String {
     let git = |arguments: &str| {
-        let output = Command::new("git")
+        let mut command = Command::new("git");
+        let output = command
             .current_dir(ROOT)
             .args(arguments.split(' '))
-            .output()
-            .unwrap();
-        String::from_utf8(output.stdout).unwrap().trim().to_string()
+            .output();
+        String::from_utf8(output.unwrap().stdout).unwrap()
     };
     let changes = git("status --porcelain --untracked-files=no");
-    let suffix = if changes.is_empty() {
-        ""
-    } else {
-        " with changes"
-    };
-    git("rev-parse HEAD") + suffix
+    let is_changed = ["", " with changes"][usize::from(!changes.is_empty())];
+    git("rev-parse HEAD").trim().to_string() + is_changed
 }
