@@ -71,6 +71,11 @@ impl Copy {
         self.write(path, text.as_bytes());
     }
 
+    /// Forgets what was put aside, for cargo has built other texts since.
+    pub fn forget(&self) {
+        let _ = fs::remove_dir_all(self.aside(""));
+    }
+
     fn aside(&self, path: &str) -> PathBuf {
         self.root.join("target/aside").join(path)
     }

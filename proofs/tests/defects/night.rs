@@ -90,6 +90,7 @@ fn the_tests_find_the_defects_of_the_ledger() {
     }
     for entry in alone.iter().map(|&number| &entries[number]) {
         let find = || {
+            copy.forget();
             build();
             by_own(&suite, entry, None).or_else(|| by_others(&suite, entry, None))
         };
@@ -137,24 +138,38 @@ fn by_own(suite: &Suite<'_>, entry: &Entry, planted: Option<usize>) -> Found {
     let (package, own) = own_tests(&entry.defect.file);
     let test = match package {
         "palpate-python" => suite.failing_in_python(planted),
-        _ => suite.failing(&own, planted),
+        _ => failing(suite, entry, &own, planted),
     };
     test.map(|test| ("own", test))
 }
 
-/// Tries the test that it names, then whatever depends on its package.
+/// Tries whatever else depends on its package.
 fn by_others(suite: &Suite<'_>, entry: &Entry, planted: Option<usize>) -> Found {
     let (package, own) = own_tests(&entry.defect.file);
-    let named = format!("test(/(^|::){}$/)", entry.defect.found_by.replace('?', "^"));
     let others = format!("rdeps(={package}) - ({own})");
-    let filters = [
-        format!("({others}) & {named}"),
-        format!("({others}) - {named}"),
-    ];
-    let test = filters
-        .iter()
-        .find_map(|filter| suite.failing(filter, planted));
+    let test = failing(suite, entry, &others, planted);
     Some(test.map_or(("nothing", String::new()), |test| ("others", test)))
+}
+
+/// The first test of a filter that fails; the one that the entry names is tried before the others.
+fn failing(
+    suite: &Suite<'_>,
+    entry: &Entry,
+    filter: &str,
+    planted: Option<usize>,
+) -> Option<String> {
+    let named = format!("test(/(^|::){}$/)", entry.defect.found_by);
+    let (first, others) = (
+        format!("({filter}) & {named}"),
+        format!("({filter}) - {named}"),
+    );
+    let parts = match &*entry.defect.found_by {
+        "?" => vec![filter],
+        _ => vec![&*first, &others],
+    };
+    parts
+        .into_iter()
+        .find_map(|part| suite.failing(part, planted))
 }
 
 /// The package of a file, and the tests of its module: those of its folder, and those that see it from outside, `NAME_command` and the like.
@@ -186,10 +201,9 @@ impl Report {
     fn open() -> Report {
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ledger.jsonl");
         let text = fs::read_to_string(&path).unwrap_or_default();
-        let mut lines = text
-            .lines()
-            .map(|line| serde_json::from_str(line).unwrap())
-            .collect::<Vec<Value>>();
+        // Half a line is one that was being written.
+        let lines = text.lines().map(serde_json::from_str);
+        let mut lines: Vec<Value> = lines.flatten().collect();
         let commit = commit();
         if lines.first().is_none_or(|first| first["commit"] != *commit) {
             lines.clear();
@@ -221,8 +235,7 @@ impl Report {
             is_alone,
             is_drawn,
         } = entry;
-        let is_known = |line: &Value| line["file"] == *defect.file && line["name"] == *defect.name;
-        if self.lines.iter().any(is_known) {
+        if self.lines.iter().any(|line| is_of(line, entry)) {
             return;
         }
         let Some((found, test)) = find() else { return };
@@ -236,15 +249,20 @@ impl Report {
     /// Writes `ledger.json`, and fails if a defect that names its test was not found.
     fn end(&self, entries: &[Entry]) {
         let power = power(&self.lines[1..]);
-        for line in &power {
-            println!("{line}");
+        for row in &power {
+            let [of, defects, found, own] =
+                ["of", "defects", "found", "by_own"].map(|key| &row[key]);
+            let [lower, upper] = ["lower", "upper"].map(|key| row[key].as_f64().unwrap());
+            println!(
+                "{of}: {found} of {defects} found, {own} by own tests, {lower:.3} to {upper:.3}"
+            );
         }
         let report = json!({"commit": self.commit, "confidence": CONFIDENCE, "power": power, "defects": self.lines[1..]});
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("ledger.json");
         fs::write(path, format!("{report:#}\n")).unwrap();
         let names_a_test = |line: &&Value| {
             let mut named = entries.iter().filter(|entry| entry.defect.found_by != "?");
-            line["found"] == "nothing" && named.any(|entry| line["name"] == *entry.defect.name)
+            line["found"] == "nothing" && named.any(|entry| is_of(line, entry))
         };
         let lost: Vec<_> = self.lines.iter().filter(names_a_test).collect();
         assert!(
@@ -252,6 +270,11 @@ impl Report {
             "these name a test, and nothing finds them: {lost:?}"
         );
     }
+}
+
+/// Whether a line tells of a defect.
+fn is_of(line: &Value, entry: &Entry) -> bool {
+    line["file"] == *entry.defect.file && line["name"] == *entry.defect.name
 }
 
 /// The share of the drawn defects that is found, of all and by part and class.
