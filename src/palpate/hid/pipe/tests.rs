@@ -213,6 +213,17 @@ fn an_output_that_nobody_reads_ends_the_session() {
     assert!(end.starts_with("stopped: pipe: write: "), "{end}");
 }
 
+// Verifies: HID-110.
+#[test]
+fn a_force_leaves_at_once_through_an_output_that_buffers() {
+    let (sender, sent) = channel();
+    let output = std::io::BufWriter::new(Noting(sender));
+    let mut device = PipeDevice::open(Cursor::new(PAPER.encode()), output).unwrap();
+    device.write(&ForceReport::default()).unwrap();
+    let sent: Vec<u8> = sent.try_iter().collect();
+    assert_eq!(sent, ForceReport::default().encode());
+}
+
 /// The end of an input, which tells that it was reached.
 struct Reached(std::sync::mpsc::Sender<()>);
 
@@ -233,8 +244,12 @@ fn the_oldest_reports_are_kept_when_nobody_reads_them() {
     scope(|scope| {
         scope.spawn(move || pass_on(Cursor::new(sent).chain(Reached(reached)), &sender));
         all_sent.recv().unwrap();
-        let kept = reports.iter().map_while(Result::ok);
-        let kept: Vec<u16> = kept.map(|report| report.sequence).collect();
-        assert_eq!(kept, (1..=63).collect::<Vec<_>>());
+        // Time enough to lose the reason, which comes behind a full queue.
+        std::thread::sleep(Duration::from_millis(50));
+        let mut brought: Vec<Brought> = reports.iter().collect();
+        let end = brought.pop().unwrap().unwrap_err().message;
+        assert_eq!(end, "pipe: read: the input ended where a report must begin");
+        let kept = brought.into_iter().map(|report| report.unwrap().sequence);
+        assert_eq!(kept.collect::<Vec<_>>(), (1..=63).collect::<Vec<_>>());
     });
 }
