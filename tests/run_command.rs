@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use crate::program::{ASYMMETRIC, Place, contents, text};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
+use palpate::trace::Trace;
 use palpate_asserts::assert_has;
 
 // Verifies: CLI-007, CLI-031, CLI-032, CON-006.
@@ -188,6 +189,37 @@ fn the_files_of_the_demo_are_the_same_each_time_and_can_be_used() {
     for (channel, mean) in [(1, 0.05 - 0.025), (2, 0.3 + 0.05)] {
         let found = rows.iter().map(|row| row[channel]).sum::<f64>() / 401.0;
         assert!((found - mean).abs() < 0.5 / 401_f64.sqrt(), "{found}");
+    }
+    // Each sweep has noise of its own: of 0.1 N, and none of it in the other.
+    let noise = |sweep: &str, map: &str| -> Vec<f64> {
+        let trace = Trace::from_csv(&here.read(&format!("first/{sweep}")), sweep).unwrap();
+        let map = ForceMap::read(&here.at(&format!("first/{map}"))).unwrap();
+        let record = trace.record(None).unwrap();
+        let exact = record.expected(map.table(), 4e-3).unwrap();
+        let pairs = record.forces().normal.iter().zip(exact.normal);
+        pairs.map(|(force, exact)| force - exact).collect()
+    };
+    let [without, with] = ["without", "with"].map(|name| {
+        let map = if name == "with" {
+            "inclusion.json"
+        } else {
+            "none.json"
+        };
+        noise(&format!("sweep-{name}.csv"), map)
+    });
+    let product =
+        |one: &[f64], other: &[f64]| one.iter().zip(other).map(|(a, b)| a * b).sum::<f64>() / 401.0;
+    // Five standard deviations of a mean of products; positions are rounded to 1 µm.
+    for (one, other, expected) in [
+        (&with, &with, 1.0),
+        (&without, &without, 1.0),
+        (&with, &without, 0.0),
+    ] {
+        let found = product(one, other) / 0.01;
+        assert!(
+            (found - expected).abs() < 5.0 * (2.0_f64 / 401.0).sqrt(),
+            "{found}"
+        );
     }
     // A configuration in another folder, with its files beside it.
     let own = "phantoms = [\"gel.toml\"]\nmeasured = [\"measured.csv\"]\ndepths_mm = \"1\"\nlaterals_mm = \"0\"\n[mesh]\nsize_mm = 3.0\n";

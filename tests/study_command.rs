@@ -125,6 +125,10 @@ fn a_finished_study_computes_nothing_and_takes_each_sample_once() {
     let holds = text(&output.stderr).contains("39 of 39 samples already computed");
     assert!(holds, "{output:?}");
     assert_eq!(place.read("out/samples-1-of-1.jsonl"), expected()[0]);
+    // What failed before counts as if it had failed now.
+    let failed = expected()[0].matches("\"failed\":").count();
+    let told = format!("39 samples in out/samples-1-of-1.jsonl, of which {failed} failed\n");
+    assert_eq!((text(&output.stdout), failed > 0), (&*told, true));
     assert_takes_its_own_samples_once(&place);
     assert_merges_in_any_order(&place);
 }
@@ -175,13 +179,33 @@ fn assert_takes_its_own_samples_once(place: &Place) {
 
 /// Asserts that the order of samples and folders changes nothing.
 fn assert_merges_in_any_order(place: &Place) {
-    let (header, samples) = expected()[0].split_once('\n').unwrap();
+    let [all, results] = expected();
+    assert_merges_alike(place, all, results);
+    // With two more that failed, in shards of their own, which are told in the order of the samples.
+    let failing = all.lines().map(|line| match line {
+        line if line.starts_with("{\"sample\":37,") => "{\"sample\":37,\"failed\":\"a\"}\n".into(),
+        line if line.starts_with("{\"sample\":38,") => "{\"sample\":38,\"failed\":\"b\"}\n".into(),
+        line => format!("{line}\n"),
+    });
+    let failing: String = failing.collect();
+    assert_ne!(failing, *all);
+    let _ = fs::create_dir(place.at("whole"));
+    place.write("whole/samples-1-of-1.jsonl", &failing);
+    place.succeed("study merge whole --out whole.json");
+    let results = place.read("whole.json");
+    assert_has(&results, "\"sample\":37|\"sample\":38");
+    assert_merges_alike(place, &failing, &results);
+}
+
+/// Asserts that these samples have these results in whatever order and folders they come.
+fn assert_merges_alike(place: &Place, all: &str, results: &str) {
+    let (header, samples) = all.split_once('\n').unwrap();
     let shard = |number: usize| {
         let header = header.replace(
             "{\"number\":1,\"of\":1}",
             &format!("{{\"number\":{number},\"of\":3}}"),
         );
-        assert_ne!(header, expected()[0].split_once('\n').unwrap().0);
+        assert_ne!(header, all.split_once('\n').unwrap().0);
         let mut lines: Vec<&str> = samples.lines().collect();
         lines.retain(|line| {
             line.split([':', ','])
@@ -206,7 +230,7 @@ fn assert_merges_in_any_order(place: &Place) {
             place.write(&format!("{folder}/samples-{number}-of-3.jsonl"), text);
         }
         place.succeed(&format!("study merge {folders} --out study.json"));
-        assert_eq!(place.read("study.json"), expected()[1], "{folders}");
+        assert_eq!(place.read("study.json"), results, "{folders}");
     }
 }
 

@@ -2,45 +2,47 @@
 //! fail. `cargo test --release -p palpate-proofs --test defects -- --ignored`. And bugs of people, which the tests that they name found.
 #![cfg(not(any(kani, fuzzing)))]
 
+#[path = "defects/copy.rs"]
+mod copy;
 #[path = "defects/list.rs"]
 mod list;
+#[path = "defects/night.rs"]
+mod night;
+#[path = "defects/suite.rs"]
+mod suite;
+#[path = "defects/switch.rs"]
+mod switch;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
-use list::{Defect, defects, of_people};
+use copy::{Copy, ROOT};
+use list::{Entry, defects, ledger};
 
 /// The packages that the harnesses see.
 const PACKAGES: [&str; 4] = ["src/core", "bindings/c", "proofs", "tests/asserts"];
 
-/// A copy of the core and its proofs, with a target folder of its own.
-struct Copy {
-    root: PathBuf,
-}
+/// A copy of the core and its proofs.
+struct Harnesses(Copy);
 
-impl Copy {
-    fn new() -> Copy {
-        let root = Path::new(env!("CARGO_TARGET_TMPDIR")).join("defects");
-        let from = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
-        for package in PACKAGES {
-            let _ = fs::remove_dir_all(root.join(package));
-            copy_folder(&from.join(package), &root.join(package));
-        }
-        fs::copy(from.join("Cargo.lock"), root.join("Cargo.lock")).unwrap();
-        let manifest = fs::read_to_string(from.join("Cargo.toml")).unwrap();
+impl Harnesses {
+    fn new() -> Harnesses {
+        let manifests = ["Cargo.toml", "Cargo.lock"];
+        let copy = Copy::new("defects", &[&PACKAGES[..], &manifests].concat());
+        let manifest = copy.read("Cargo.toml");
         let (_, shared) = manifest.split_once("[workspace.package]").unwrap();
         let workspace = format!("[workspace]\nresolver = \"3\"\nmembers = {PACKAGES:?}\n");
         let manifest = format!("{workspace}[workspace.package]{shared}");
-        fs::write(root.join("Cargo.toml"), manifest).unwrap();
-        Copy { root }
+        copy.write("Cargo.toml", manifest.as_bytes());
+        Harnesses(copy)
     }
 
     /// The harnesses that fail among those with `name` in their name.
     fn failing(&self, name: &str) -> Vec<String> {
         let run = Command::new(env!("CARGO"))
-            .current_dir(&self.root)
-            .env("CARGO_TARGET_DIR", self.root.join("target"))
+            .current_dir(&self.0.root)
+            .env("CARGO_TARGET_DIR", self.0.root.join("target"))
             // Most of the time goes into building.
             .env("CARGO_PROFILE_DEV_OPT_LEVEL", "1")
             .env("CARGO_PROFILE_DEV_DEBUG", "false")
@@ -59,43 +61,21 @@ impl Copy {
             .map(str::to_owned)
             .collect()
     }
-
-    /// Those that fail with a defect among the ones that it names.
-    fn failing_with(&self, defect: &Defect) -> Vec<String> {
-        let path = self.root.join(defect.file);
-        let sound = fs::read_to_string(&path).unwrap();
-        let [from, to] = &defect.edit;
-        let found = sound.matches(from).count();
-        let Defect { name, file, .. } = defect;
-        assert_eq!(found, 1, "{name}: {file} must have once: {from}");
-        fs::write(&path, sound.replace(from, to)).unwrap();
-        let failing = self.failing(defect.found_by);
-        fs::write(&path, sound).unwrap();
-        failing
-    }
-}
-
-fn copy_folder(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap() {
-        let entry = entry.unwrap();
-        let to = to.join(entry.file_name());
-        if entry.file_type().unwrap().is_dir() {
-            copy_folder(&entry.path(), &to);
-        } else {
-            fs::copy(entry.path(), to).unwrap();
-        }
-    }
 }
 
 #[test]
 #[ignore = "builds the proofs once for each defect"]
 fn each_planted_defect_is_found_by_its_harness() {
-    let copy = Copy::new();
-    assert_eq!(copy.failing(""), [""; 0], "without a defect nothing fails");
+    let harnesses = Harnesses::new();
+    assert_eq!(
+        harnesses.failing(""),
+        [""; 0],
+        "without a defect nothing fails"
+    );
     let mut missed = Vec::new();
     for defect in defects() {
-        let failing = copy.failing_with(&defect);
+        let found = || harnesses.failing(&defect.found_by);
+        let failing = harnesses.0.with(&defect, found);
         println!("{}: {}", defect.name, failing.join(", "));
         if failing.is_empty() {
             missed.push(defect.name);
@@ -122,34 +102,23 @@ fn sources(folder: &Path) -> String {
 }
 
 #[test]
-fn each_defect_of_people_has_its_place_and_its_test() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+fn each_defect_of_the_ledger_has_its_place_and_its_test() {
+    let root = Path::new(ROOT);
     let folders = [
         "src",
         "tests",
+        "proofs",
         "vectors/conform",
         "bindings/c",
         "bindings/python",
     ];
     let tests = folders.map(|folder| sources(&root.join(folder))).concat();
-    for Defect {
-        name,
-        file,
-        edit: [from, to],
-        found_by,
-    } in of_people()
-    {
-        let found = fs::read_to_string(root.join(file))
-            .unwrap()
-            .matches(&from)
-            .count();
-        assert!(
-            found == 1 && from != to,
-            "{name}: {file} must have once: {from}"
-        );
+    for Entry { defect, .. } in ledger() {
+        defect.place(&fs::read_to_string(root.join(&defect.file)).unwrap());
+        let test = &defect.found_by;
         let is_there = ["fn", "def"]
             .iter()
-            .any(|word| tests.contains(&format!("{word} {found_by}(")));
-        assert!(is_there, "{name}: no test {found_by}");
+            .any(|word| tests.contains(&format!("{word} {test}(")));
+        assert!(test == "?" || is_there, "{}: no test {test}", defect.name);
     }
 }

@@ -290,6 +290,26 @@ mod tests {
 
     // Verifies: CLI-157.
     #[test]
+    fn a_line_that_is_refused_has_its_number_in_the_file() {
+        let path = std::env::temp_dir().join(format!("palpate-journal-{}", std::process::id()));
+        let open = |wrong: &str| {
+            Journal::open(path.clone(), &"request", "\"re", "test", |line| {
+                Refusal::state("wrong", "").when(line == wrong)
+            })
+        };
+        let journal = open("").unwrap();
+        journal.append(&1).unwrap();
+        journal.append(&2).unwrap();
+        drop(journal);
+        for (wrong, number) in [("1", 2), ("2", 3)] {
+            let error = open(wrong).unwrap_err().to_string();
+            assert_eq!(error, format!("{}:{number}: wrong", path.display()));
+        }
+        std::fs::remove_file(path).unwrap();
+    }
+
+    // Verifies: CLI-157.
+    #[test]
     fn lines_are_counted_beyond_16_bits() {
         let text = "1\n".repeat(1 << 16) + "not one\nrest";
         let mut taken = 0;

@@ -150,3 +150,24 @@ pub fn did_you_mean<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) ->
         _ => String::new(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Refusal;
+
+    // Verifies: CLI-002.
+    #[test]
+    fn a_refusal_names_the_part_and_the_key_within_it() {
+        let keyed = Refusal::value("depth_mm", -1, "above 0").under("inclusion[0]");
+        let keyed = keyed.of_part("maps[3]").in_file("bank.json");
+        assert_eq!(
+            keyed.to_string(),
+            "bank.json: maps[3]: inclusion[0].depth_mm = -1, but must be above 0"
+        );
+        let state = Refusal::state("no rows", "give one").of_part("maps[3]");
+        assert_eq!(
+            state.at(7).to_string(),
+            "line 7: maps[3]: no rows; give one"
+        );
+    }
+}

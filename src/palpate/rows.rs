@@ -384,3 +384,22 @@ fn digits(value: f64) -> String {
         format!("{value:.6}")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Verifies: CLI-043.
+    #[test]
+    fn each_sweep_has_its_place_in_a_list() {
+        let mut rows = Rows::default();
+        rows.list("levels", "levels", &[None, Some(1.5), None]);
+        rows.list("one", "one", &[Some(2.5)]);
+        rows.list("nothing", "nothing", &[None]);
+        let text = rows.table();
+        let texts: Vec<&str> = text.lines().map(|line| line[35..].trim()).collect();
+        assert_eq!(texts, ["none, 1.500000, none", "2.500000"]);
+        let json = json!({"levels": [null, 1.5, null], "one": 2.5, "nothing": null});
+        assert_eq!(serde_json::to_value(&rows).unwrap(), json);
+    }
+}

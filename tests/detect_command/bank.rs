@@ -129,6 +129,38 @@ fn a_figure_shows_where_the_inclusion_lies() {
     assert!(holds, "{figure}");
 }
 
+// The region of 50 % lies within that of 95 %.
+// Verifies: CLI-163.
+#[test]
+fn the_key_of_a_figure_names_its_regions_and_depth_goes_down() {
+    located("moved.csv", "--figure regions.svg");
+    let figure = place().read("regions.svg");
+    let before = |words: &str| figure.split(&format!(">\n{words}\n<")).next().unwrap();
+    // The text has a colour too.
+    let sample = |name: &str| &before(name).rsplit("fill=\"#").nth(1).unwrap()[..6];
+    let region = |path: &str| {
+        let [outline, colour] = ["\"", "fill=\"#"].map(|mark| path.split(mark));
+        let numbers = outline
+            .clone()
+            .next()
+            .unwrap()
+            .split(|c: char| !c.is_numeric());
+        let numbers: Vec<u32> = numbers.filter_map(|number| number.parse().ok()).collect();
+        let across = numbers.iter().step_by(2);
+        let width = across.clone().max().unwrap() - across.min().unwrap();
+        (width, colour.clone().nth(1).unwrap()[..6].to_owned())
+    };
+    let mut regions: Vec<_> = figure.split("<path d=\"").skip(1).map(region).collect();
+    regions.sort();
+    let colours: Vec<&str> = regions.iter().map(|(_, colour)| &**colour).collect();
+    assert_eq!(colours, [sample("its top: 50 %"), sample("95 %")]);
+    let height = |number: &str| -> u32 {
+        let of = before(number).rsplit(" y=\"").next().unwrap();
+        of.split('"').next().unwrap().parse().unwrap()
+    };
+    assert!(height("0") < height("2") && height("2") < height("4"));
+}
+
 // Verifies: CLI-153.
 #[test]
 fn an_interval_is_open_where_the_bank_ends() {

@@ -11,13 +11,13 @@ const KNOWN: &str = "--depth-mm 3 --known smooth,surface,stage,tilt,friction,rel
 fn folder() -> [&'static str; 2] {
     let [with, without] = ["with.csv", "without.csv"].map(|file| place().read(file));
     std::fs::create_dir_all(place().at("many")).unwrap();
-    place().write("many/b with.csv", with);
-    place().write("many/a,without.CSV", without);
+    place().write("many/b wïth.csv", with);
+    place().write("many/a,wïthout.CSV", without);
     place().write("many/c broken.csv", "position_mm,lateral_force_n\n0,1\n");
     place().write("many/notes.txt", "none");
     let machine = place().read("with.csv").replace("lateral_force_n", "Fx");
     place().write("machine.csv", machine);
-    ["many/a,without.CSV", "many/b with.csv"]
+    ["many/a,wïthout.CSV", "many/b wïth.csv"]
 }
 
 // Verifies: CLI-175, CLI-003.
@@ -79,14 +79,14 @@ fn each_record_of_a_folder_is_judged_alone() {
     assert_eq!(
         csv[1],
         format!(
-            "\"many/a,without.CSV\",{},{},,",
+            "\"many/a,wïthout.CSV\",{},{},,",
             "no_inclusion",
             of(&lines[0])
         )
     );
     assert_eq!(
         csv[2],
-        format!("many/b with.csv,inclusion,{},,", of(&lines[1]))
+        format!("many/b wïth.csv,inclusion,{},,", of(&lines[1]))
     );
     assert!(
         csv[3].starts_with("many/c broken.csv,,,,,,,\"many/c broken.csv:1: no column"),
@@ -100,12 +100,12 @@ fn each_record_of_a_folder_is_judged_alone() {
         "file                decision          posterior"
     );
     assert!(
-        table[1].starts_with("many/a,without.CSV  no inclusion      0.0"),
+        table[1].starts_with("many/a,wïthout.CSV  no inclusion      0.0"),
         "{}",
         table[1]
     );
     assert!(
-        table[2].starts_with("many/b with.csv     inclusion         "),
+        table[2].starts_with("many/b wïth.csv     inclusion         "),
         "{}",
         table[2]
     );

@@ -174,6 +174,21 @@ fn a_figure_shows_the_record_beside_what_explains_it() {
     assert_eq!(alone.matches("<circle").count(), 33 * 2 + 2);
 }
 
+// Verifies: CLI-140, ROB-032, BNK-012.
+#[test]
+fn a_prior_excludes_what_it_gives_no_weight() {
+    // The inclusion is at 1.5 mm.
+    let left = "position_mm,depth_mm,diameter_mm,youngs_modulus_kpa,weight\n-3,2.6,6.4,1200,1\n-3,3.6,6.4,1200,1\n";
+    place().write("left.csv", left);
+    let asked = "moved.csv --bank bank.json --known gel,support,surface,stage";
+    let estimate = |more: &str| {
+        let (found, _) = answer(&format!("{asked} {more}"));
+        found["position"]["estimate"].as_f64().expect("a position")
+    };
+    assert!((estimate("") - 1.5e-3).abs() < 1e-3);
+    assert!((estimate("--prior left.csv") + 3e-3).abs() < 1e-12);
+}
+
 // Verifies: ROB-020, ROB-033, ROB-046, ROB-047, ROB-002, CLI-140, CLI-045.
 #[test]
 fn what_is_known_of_the_gel_makes_an_answer_surer() {

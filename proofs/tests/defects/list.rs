@@ -1,15 +1,20 @@
 //! The planted defects: plausible bugs, each a few words of the source.
 
+use std::fs;
+use std::ops::Range;
+use std::path::Path;
+
 /// A bug to plant.
+#[derive(Debug, Clone)]
 pub struct Defect {
     /// What it is.
-    pub name: &'static str,
+    pub name: String,
     /// Where.
-    pub file: &'static str,
+    pub file: String,
     /// What is replaced, which must be there once, and by what.
     pub edit: [String; 2],
     /// A harness that must fail.
-    pub found_by: &'static str,
+    pub found_by: String,
 }
 
 /// All, by the files that they are in: what each is, and the harness; below it the words. `\n` is a line's end.
@@ -93,32 +98,116 @@ no inclusion for a NaN: no_inclusion_is_never_decided_without_finite_numbers
 `    check_finite("theta", theta)?;\n    check_finite("eta", eta)?;\n` becomes `    check_finite("eta", eta)?;\n`
 "#;
 
+/// The defects that harnesses must find.
 pub fn defects() -> Vec<Defect> {
     read(DEFECTS)
 }
 
-/// Those that a careful person makes, anywhere: a test that must fail stands where that of a harness does above.
-pub fn of_people() -> Vec<Defect> {
-    read(include_str!("people.txt"))
+impl Defect {
+    /// Where in the text of its file it stands.
+    pub fn place(&self, sound: &str) -> Range<usize> {
+        let Defect { name, file, .. } = self;
+        let [from, to] = &self.edit;
+        let found: Vec<_> = sound.match_indices(from).collect();
+        assert_eq!(found.len(), 1, "{name}: {file} must have once: {from}");
+        assert_ne!(from, to, "{name}: nothing changes");
+        found[0].0..found[0].0 + from.len()
+    }
+
+    /// The text with it.
+    pub fn planted(&self, sound: &str) -> String {
+        let mut text = sound.to_string();
+        text.replace_range(self.place(sound), &self.edit[1]);
+        text
+    }
 }
 
-fn read(text: &'static str) -> Vec<Defect> {
+/// The classes of the ledger: two values of one type exchanged; a number that is nearly right; an order or a symmetry assumed; an old value
+/// or shared state; an error lost; a size, index or wrap; a boundary; a sign, factor or term; a name, unit, escape or format.
+pub const CLASSES: [&str; 9] = [
+    "swap",
+    "constant",
+    "order",
+    "stale",
+    "swallowed",
+    "counter",
+    "edge",
+    "formula",
+    "text",
+];
+
+/// A defect of the ledger: of the kind that a careful person makes, anywhere.
+#[derive(Debug, Clone)]
+pub struct Entry {
+    /// The defect; what must find it is a test, or `?` as long as that is not known.
+    pub defect: Defect,
+    /// One of [`CLASSES`].
+    pub class: String,
+    /// Whether it is built alone, since it does not compile behind the switch: the entry says `alone` behind its class.
+    pub is_alone: bool,
+    /// Whether its place was drawn by seed, so that it counts for the power of the tests.
+    pub is_drawn: bool,
+}
+
+/// The ledger: `proofs/ledger/*.txt`, a file after the other.
+pub fn ledger() -> Vec<Entry> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("ledger");
+    let mut paths: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|end| end == "txt"))
+        .collect();
+    paths.sort();
+    let file = |path: &Path| {
+        let is_drawn = path.ends_with("drawn.txt");
+        let defects = read(&fs::read_to_string(path).unwrap());
+        defects
+            .into_iter()
+            .map(move |defect| Entry::of(defect, is_drawn))
+    };
+    paths.iter().flat_map(|path| file(path)).collect()
+}
+
+impl Entry {
+    /// Takes the class off the name.
+    fn of(mut defect: Defect, is_drawn: bool) -> Entry {
+        let (class, name) = defect.name.split_once(": ").expect(&defect.name);
+        let (class, is_alone) = match class.strip_suffix(" alone") {
+            Some(class) => (class.to_string(), true),
+            None => (class.to_string(), false),
+        };
+        assert!(CLASSES.contains(&&*class), "{}: no class", defect.name);
+        defect.name = name.to_string();
+        Entry {
+            defect,
+            class,
+            is_alone,
+            is_drawn,
+        }
+    }
+}
+
+/// Reads defects; a line that begins with `#` is a comment.
+fn read(text: &str) -> Vec<Defect> {
     let mut defects = Vec::new();
     let mut file = "";
-    let mut lines = text.trim().lines();
+    let mut lines = text
+        .lines()
+        .filter(|line| !line.is_empty() && !line.starts_with('#'));
     while let Some(line) = lines.next() {
         if let Some(path) = line.strip_prefix("=== ") {
             file = path;
             continue;
         }
-        let (name, found_by) = line.split_once(": ").expect(line);
+        let (name, found_by) = line.rsplit_once(": ").expect(line);
         let words: Vec<&str> = lines.next().expect(name).split('`').collect();
+        assert_eq!(words.len(), 5, "{name}: `words` becomes `words`");
         let [from, to] = [1, 3].map(|at| words[at].replace("\\n", "\n"));
         defects.push(Defect {
-            name,
-            file,
+            name: name.into(),
+            file: file.into(),
             edit: [from, to],
-            found_by,
+            found_by: found_by.into(),
         });
     }
     defects

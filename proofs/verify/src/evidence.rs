@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use palpate::version::Build;
 
 use super::components::{Component, lock_sha256};
+use super::planted::Planted;
 use super::system::System;
 use super::test_run::{Evidenced, TestRun};
 use super::{Figure, Outcome};
@@ -49,6 +50,8 @@ pub struct Evidence {
     pub components: Vec<Component>,
     /// SHA-256 of the bill of materials that lists these components, if one was given.
     pub bill_of_materials: Option<String>,
+    /// How much the tests find, if that was given.
+    pub planted: Option<Planted>,
 }
 
 /// Batteries with fresh seeds.
@@ -150,6 +153,7 @@ impl Evidence {
                 "system": self.system,
                 "executables": self.executables,
                 "test_runs": self.test_runs.iter().map(head).collect::<Vec<_>>(),
+                "planted": self.planted,
                 "checks": all(others),
                 "seconds": seconds,
             },

@@ -11,6 +11,7 @@
 //! | `timing.rs` | the time that a step and a cycle take here |
 //! | `system.rs`, `components.rs` | the machine of this run, and the components of the program |
 //! | `test_run.rs` | test runs, and the evidence of each requirement |
+//! | `planted.rs` | the share of planted defects that the tests find |
 //! | `evidence.rs`, `dossier/` | all of it for programs, and as a page |
 
 #[macro_use]
@@ -21,6 +22,7 @@ pub mod dossier;
 pub mod evidence;
 pub mod fem;
 pub mod kernel;
+pub mod planted;
 pub mod program;
 mod rates;
 pub mod statistics;

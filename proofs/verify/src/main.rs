@@ -14,6 +14,7 @@ use palpate_program::progress::bar;
 use palpate_program::{CliError, program as command};
 use palpate_verify::components::Component;
 use palpate_verify::evidence::{Evidence, PARTS, Soak, Verdict};
+use palpate_verify::planted::Planted;
 use palpate_verify::statistics::{battery, total_alpha};
 use palpate_verify::system::System;
 use palpate_verify::test_run::{self, TestRun, evidence_by_requirement};
@@ -37,6 +38,9 @@ struct Arguments {
     /// A test run, as .ci/run writes it to target/results/test-run.json; may be given several times
     #[arg(long, value_name = "FILE")]
     test_run: Vec<PathBuf>,
+    /// What the tests find of planted defects, as `.ci/run all` writes it to target/ledger.json
+    #[arg(long, value_name = "FILE")]
+    planted: Option<PathBuf>,
     /// The bill of materials of the program, as `cargo cyclonedx --format json` writes it
     #[arg(long, value_name = "FILE")]
     sbom: Option<PathBuf>,
@@ -102,6 +106,7 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
         outcomes,
         components: inputs.components,
         bill_of_materials: inputs.bill_of_materials,
+        planted: inputs.planted,
         test_runs: inputs.test_runs,
     };
     write_evidence(&evidence, arguments)
@@ -112,6 +117,7 @@ struct Inputs {
     test_runs: Vec<TestRun>,
     components: Vec<Component>,
     bill_of_materials: Option<String>,
+    planted: Option<Planted>,
 }
 
 impl Inputs {
@@ -132,7 +138,9 @@ impl Inputs {
             Some(path) => components::bill_of_materials(path),
             None => Ok(components::locked()),
         };
+        let planted = arguments.planted.as_deref().map(Planted::read);
         Ok(Inputs {
+            planted: planted.transpose().map_err(CliError::Usage)?,
             test_runs: test_runs
                 .collect::<Result<_, _>>()
                 .map_err(CliError::Usage)?,

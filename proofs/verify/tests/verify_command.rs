@@ -135,6 +135,7 @@ fn bad_arguments_are_refused() {
         &["--test-run", "Cargo.toml"],
         &["--test-run", "nowhere.json"],
         &["--sbom", "Cargo.toml"],
+        &["--planted", "Cargo.toml"],
         &["--only", "statistics,physics"],
         &["--only", ""],
     ] {

@@ -230,6 +230,22 @@ fn records_that_cannot_be_judged_are_refused() {
             assert_eq!(found.unwrap_err(), expected(what));
         }
     }
+    // The first list says how long all are.
+    for (position, what) in ["f0_x", "f0_y", "f1_x", "f1_y"].into_iter().enumerate() {
+        for other in [&[1.0][..], &[1.0, 2.0, 3.0]] {
+            let mut series = [&samples[..]; 4];
+            series[position] = other;
+            let [ax, ay, bx, by] = series;
+            let found = theta_of_record(good, Force::new(ax, ay), Force::new(bx, by), sd);
+            let (expected, found_length) = (2, other.len());
+            let mismatch = DetectError::LengthMismatch {
+                what,
+                expected,
+                found: found_length,
+            };
+            assert_eq!(found.unwrap_err(), mismatch);
+        }
+    }
     for bad in [0.0, -0.0, -1.0, f64::NAN, f64::INFINITY] {
         let found = filter_of(&samples, &samples, Force::new(1.0, bad));
         assert!(matches!(

@@ -320,6 +320,8 @@ fn arming_needs_a_fresh_sample_without_deadman_and_a_new_request() {
     // No sample.
     session.cycle(None, Request::Arm);
     assert_eq!(session.state.mode, Mode::Disarmed);
+    // The request has stuck meanwhile, and is none that is new.
+    assert_eq!(session.mode_after(false, Request::Arm), Mode::Disarmed);
     session.arm();
 }
 

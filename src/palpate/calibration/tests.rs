@@ -217,6 +217,28 @@ probe = { radius_mm = 6.5, length_mm = 30 }
     assert_eq!(error, "layer = 7, but must be below 2");
 }
 
+// Verifies: CAL-012, CAL-013.
+#[test]
+fn one_factor_is_that_of_all_moduli_and_of_an_inclusion_too() {
+    let phantom = Phantom::builtin("4.6").unwrap();
+    let moduli = |of: &Phantom| -> Vec<f64> {
+        let layers = of.layers().iter().map(|layer| layer.material);
+        let all = layers.chain(of.inclusions().iter().map(|of| of.material));
+        all.map(|material| material.youngs_modulus).collect()
+    };
+    let own = moduli(&phantom);
+    assert_eq!(own.len(), 3);
+    let stiffer = |layers: &[usize]| moduli(&stiffened(&phantom, layers, &[1.5]).unwrap());
+    let scaled = |factors: [f64; 3]| -> Vec<f64> {
+        own.iter()
+            .zip(factors)
+            .map(|(modulus, factor)| factor * modulus)
+            .collect()
+    };
+    assert_eq!(stiffer(&[]), scaled([1.5; 3]));
+    assert_eq!(stiffer(&[1]), scaled([1.0, 1.5, 1.0]));
+}
+
 /// A sphere on a gel that relaxes by a power law, 2 s down and 10 s held; from a contact on.
 fn held(amount: f64, air: f64) -> Curve {
     let times: Vec<f64> = (0..=480).map(|k| 0.025 * f64::from(k)).collect();
@@ -302,6 +324,12 @@ fn a_curve_that_says_nothing_is_not_judged() {
             Some(&serde_json::Value::Null)
         );
     }
+    // A stage that knows where the gel is may begin within it.
+    let known = CalibrationQuestion {
+        contact: Some(-1e-3),
+        ..ALONE
+    };
+    assert_eq!(calibrate(&held(0.2, -1e-3), known).unwrap().cause, None);
 }
 
 // Verifies: CAL-012, CAL-040. The skin alone cannot make a gel half as stiff: its modulus goes down with each step, until no gel has it.
@@ -341,6 +369,12 @@ fn curves_that_are_none_are_refused() {
             &["samples of the way back are not used: 29".to_string()][..]
         )
     );
+    // With what the reader of the file has to say before it.
+    let rows = there_and_back.iter().map(|x| format!("{x},{x},0\n"));
+    let text = "depth_m,normal_force_n,note\n".to_string() + &rows.collect::<String>();
+    let read = Curve::from_csv(&text, "c.csv", &Default::default()).unwrap();
+    let unused = "column \"note\" is not used".to_string();
+    assert_eq!(read.notes(), [unused, kept.notes()[0].clone()]);
     assert_eq!(
         curve(40, 0.0),
         "c: the probe does not move; give a curve into the gel"
@@ -351,6 +385,20 @@ fn curves_that_are_none_are_refused() {
         error.to_string(),
         "c.csv: time 0.0 s after 0.0 s; give times that increase"
     );
+}
+
+// Verifies: CAL-030. Of Student's law with one and with two degrees of freedom the quantiles are known.
+#[test]
+fn an_interval_holds_95_of_100_by_students_law() {
+    let tangent = (0.475 * std::f64::consts::PI).tan();
+    for (degrees, point) in [(1.0, tangent), (2.0, 0.95 * (2.0_f64 / 0.0975).sqrt())] {
+        let Interval { estimate, ends } = Interval::of(3.0, 2.0, degrees).unwrap();
+        assert_eq!(estimate, 3.0);
+        // The tails are right to some 1e-13, and the tangent multiplies by 160.
+        for (end, expected) in ends.into_iter().zip([3.0 - 2.0 * point, 3.0 + 2.0 * point]) {
+            assert!((end / expected - 1.0).abs() < 1e-10, "{end} {expected}");
+        }
+    }
 }
 
 // Verifies: CAL-031. Each sample has 0.6 of the noise of the one before it: independent samples would count as four times as many.

@@ -254,3 +254,23 @@ pub fn round_range(values: impl Iterator<Item = f64>) -> [f64; 2] {
         libm::ceil(greatest / step) * step,
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Verifies: REP-031.
+    #[test]
+    fn the_numbers_of_an_axis_differ_however_small_they_are() {
+        let line = Line::new(INK, vec![(0.0, 0.0), (0.1, 1e-3)]);
+        let panel = Panel::new("F (N)", [[0.0, 0.1], [0.0, 1e-3]], 200, vec![line]);
+        let svg = chart(&[panel], ["a", "b", "c"]).unwrap();
+        let words = svg.split(">\n").filter_map(|rest| rest.split('\n').next());
+        let mut numbers: Vec<&str> = words.filter(|word| word.parse::<f64>().is_ok()).collect();
+        let all = numbers.len();
+        numbers.sort_unstable();
+        numbers.dedup();
+        // 0 stands at both axes.
+        assert!(all >= 8 && numbers.len() == all - 1, "{numbers:?}");
+    }
+}

@@ -421,6 +421,9 @@ mod tests {
         ] {
             assert_eq!(read(TEXT, layout), Ok(expected), "{layout}");
         }
+        // A name that is a number is a name first.
+        let layout = "position=1[mm],normal=2[N]";
+        assert_eq!(read("2,1\n3,4\n", layout), Ok([4e-3, 3.0]));
         // Without a word the position counts, and of the forces the one with a name.
         assert_eq!(
             Rows::parse(TEXT, COLUMNS, "").unwrap().rows[0].1,

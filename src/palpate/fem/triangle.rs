@@ -39,3 +39,25 @@ pub fn smallest_angle(corners: [Point; 3]) -> f64 {
         0.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Verifies: FEM-017.
+    #[test]
+    fn the_smallest_angle_is_that_of_school_and_0_for_a_triangle_turned_over() {
+        let root = libm::sqrt(3.0);
+        for (corners, angle) in [
+            ([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], 45.0),
+            ([[2.0, 1.0], [2.0 + root, 1.0], [2.0, 2.0]], 30.0),
+            ([[0.0, 0.0], [1.0, 0.0], [0.5, 0.5 * root]], 60.0),
+        ] {
+            let [a, b, c] = corners.map(Point::from);
+            // A few roundings.
+            assert!((smallest_angle([a, b, c]) - angle).abs() < 1e-12);
+            assert_eq!(smallest_angle([a, c, b]), 0.0);
+            assert_eq!(smallest_angle([a, b, a + 2.0 * (b - a)]), 0.0);
+        }
+    }
+}

@@ -360,6 +360,24 @@ fn a_signal_needs_equal_axes() {
     );
 }
 
+// Verifies: MAP-033.
+#[test]
+fn minus_0_is_the_position_0() {
+    let text = "depth_mm,lateral_mm,normal_force_n\n-0,-0,1\n0,1,2\n1,-0.0,3\n1,1,4\n";
+    let table = ForceTable::from_csv(text, "t.csv").unwrap();
+    let signs = [table.depths(), table.laterals()].map(|axis| axis[0].is_sign_positive());
+    assert_eq!(signs, [true, true]);
+    assert_eq!(table.normal().values(), [1.0, 2.0, 3.0, 4.0]);
+    // The second row of a pose is the later one, whatever the sign of its zeros.
+    for (first, second) in [("0,0", "0,-0"), ("0,-0", "0,0"), ("0,0", "-0,0")] {
+        let text = format!("depth_mm,lateral_mm,normal_force_n\n{first},1\n{second},2\n");
+        assert_error(
+            ForceTable::from_csv(&text, "t.csv"),
+            "t.csv:3: a second row for depth 0.0 mm, lateral 0.0 mm; keep one; the first is line 2",
+        );
+    }
+}
+
 // Verifies: MAP-012.
 #[test]
 fn forces_at_a_stored_depth() {
@@ -529,4 +547,11 @@ fn a_map_cut_to_some_positions_keeps_their_columns() {
         map.at_laterals(&[0.0, 0.003]),
         "[..] 3.0 mm is not in the map[..]",
     );
+    // From left to right, each once.
+    for wrong in [[0.005, 0.0], [0.005, 0.005]] {
+        assert_error(
+            map.at_laterals(&wrong),
+            "laterals_m[1] = [..] above the entry before it[..]",
+        );
+    }
 }

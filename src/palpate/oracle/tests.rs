@@ -116,3 +116,38 @@ fn damaged_lines_have_one_answer_each() {
         check(&inserted);
     }
 }
+
+// Verifies: ORA-011.
+#[test]
+fn each_template_is_judged_whatever_the_others_have_come_to() {
+    // θ grows by 2 or 1.5 or falls by 2.5 a row, and ends at ±ln 100 = ±4.605.
+    let templates = [
+        "[2,2,2,2,2,2,2,2,2,2,2,2]",
+        "[1,1,1,1,1,1,1,1,1,1,1,1]",
+        "[-1,-1,-1,-1,-1,-1,-1,-1,-1,-1,-1,-1]",
+    ];
+    let ended = |order: [usize; 3]| {
+        let templates = order.map(|template| templates[template]).join(",");
+        let residual = "[2,2,2,2,2,2,2,2,2,2,2,2]";
+        let request = format!(
+            "{{\"id\":1,\"op\":\"sequential_evidence\",\"args\":{{\"residual\":{residual},\"templates\":[{templates}],\
+             \"nuisances\":[],\"max_false_alarm\":0.01,\"max_miss\":0.01}}}}"
+        );
+        let mut out = Vec::new();
+        Oracle::default().answer(request.as_bytes(), &mut out);
+        let answer: serde_json::Value = serde_json::from_slice(&out).unwrap();
+        let at = |key: &str, place: usize| answer["ok"][key][place].as_u64().expect("a row");
+        let places = [0, 1, 2].map(|template| order.iter().position(|of| *of == template).unwrap());
+        places.map(|place| [at("inclusion_at", place), at("no_inclusion_at", place)])
+    };
+    for order in [
+        [0, 1, 2],
+        [1, 0, 2],
+        [2, 1, 0],
+        [2, 0, 1],
+        [0, 2, 1],
+        [1, 2, 0],
+    ] {
+        assert_eq!(ended(order), [[3, 0], [4, 0], [0, 2]], "{order:?}");
+    }
+}

@@ -18,6 +18,7 @@ use crate::bank::{Bank, BankPlan};
 use crate::detect::Decision;
 use crate::fem::{Contact, Model};
 use crate::force::Force;
+use crate::force_map::tests::{measured, table_of};
 use crate::force_map::{ForceMap, ForceTable, Hypotheses, Matrix};
 use crate::phantom::Phantom;
 use crate::stats::random::Generator;
@@ -78,6 +79,34 @@ fn evidence_is_that_of_dense_normal_laws() {
             assert_near(found, expected, 1e-13);
         }
     }
+}
+
+// The nearest of eight sizes in equal ratios stands for a size.
+// Verifies: ROB-031.
+#[test]
+fn signals_of_nearly_one_size_have_one_shape() {
+    let of = |values: [f64; 2]| DVector::from_column_slice(&values);
+    // The seventh part of the way from 1 to 2 is a step.
+    let with = |steps: f64| {
+        let signal = |steps: f64| Signal {
+            mean: of([1.0, -0.5]),
+            size: (steps * 2f64.ln() / 7.0).exp(),
+            amplitude_sd: 0.4,
+            log_prior: 0.0,
+        };
+        let signals = [0.0, steps, 7.0].map(signal);
+        let class = WeightedClass {
+            weight: 1.0,
+            covariance: DMatrix::identity(2, 2),
+        };
+        let shape = DMatrix::from_diagonal_element(2, 2, 100.0);
+        let found = evidence(&of([2.0, 1.0]), &of([1.0, 1.0]), &[class], &signals, &shape);
+        found.unwrap().with[1]
+    };
+    for near in [3.6, 4.4] {
+        assert_eq!(with(near), with(4.0));
+    }
+    assert!(with(3.4) != with(4.0) && with(4.6) != with(4.0));
 }
 
 // Verifies: ROB-010.
@@ -453,6 +482,21 @@ fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
     let (answer, place) = judge(&record(usize::MAX, 1.0));
     assert_eq!(answer.decision, Some(Decision::NoInclusion), "{answer:?}");
     assert_eq!(place.none_down_to, Some(5.6e-3));
+    // Down to a depth there is none if each above it is excluded too.
+    let hypotheses = BankHypotheses::new(&bank, None);
+    let down_to = |of_depth: [f64; 3]| {
+        let row = |map: usize| bank.axes()[1].partition_point(|depth| *depth < bank.point(map)[1]);
+        let mut thetas = vec![0.0; answer.thetas.len()];
+        (0..bank.maps().len()).for_each(|map| thetas[map] = of_depth[row(map)]);
+        let answer = RobustAnswer {
+            thetas,
+            ..answer.clone()
+        };
+        hypotheses.place(&answer).none_down_to
+    };
+    assert_eq!(down_to([-9.0, -9.0, -9.0]), Some(5.6e-3));
+    assert_eq!(down_to([-9.0, -9.0, 0.0]), Some(4.6e-3));
+    assert_eq!(down_to([0.0, -9.0, -9.0]), None);
     for hypothesis in [0, 1] {
         let shares = answer.classes.iter().map(|(_, shares)| shares[hypothesis]);
         assert_near(shares.sum(), 1.0, 1e-12);
@@ -501,6 +545,53 @@ fn the_prior_of_a_banks_hypotheses_adds_up_to_one() {
         .signals(&[sweep])
         .unwrap();
     assert_eq!((alone.len(), alone[0].prior), (1, 1.0));
+}
+
+// Of 66 pairs a part is taken, from everywhere: over a bank that is its own mirror image they lie about x = 0.
+// Verifies: ROB-032.
+#[test]
+fn the_pairs_that_count_are_of_the_whole_bank() {
+    let x: Vec<f64> = (-8..=8).map(|x| f64::from(x) * 1e-3).collect();
+    // 0.1 N above an inclusion and 0 elsewhere, on 1 N.
+    let map = |place: Option<f64>| {
+        let force = |_, x| [0.0, 1.0 + if Some(x) == place { 0.1 } else { 0.0 }];
+        let phantom = Phantom::builtin("4.6")
+            .unwrap()
+            .changed(|parts| match place {
+                None => parts.inclusions.clear(),
+                Some(place) => parts.inclusions[0].centre_x = place,
+            });
+        measured(phantom.ok(), table_of(&[4e-3], &x, force))
+    };
+    let maps = x.iter().map(|x| map(Some(*x))).collect();
+    let bank = Bank::new(map(None), maps).unwrap();
+    let over = Record::new("over", &x, Force::new(&[0.0; 17], &[0.0; 17])).unwrap();
+    let signals = BankHypotheses::new(&bank, None)
+        .signals(&[at_place(&bank, &over, None)])
+        .unwrap();
+    let middles: Vec<f64> = signals[17..]
+        .iter()
+        .map(|pair| {
+            let normal = pair.of_sweeps[0][17..].iter().zip(&x);
+            normal.map(|(force, x)| force * x).sum::<f64>() / 0.2
+        })
+        .collect();
+    assert!((20..=40).contains(&middles.len()), "{}", middles.len());
+    let middle = middles.iter().sum::<f64>() / middles.len() as f64;
+    assert!(middle.abs() < 0.5e-3, "{middle:e}");
+    // A sweep of the left half says nothing of an inclusion at the right, and something of the others.
+    let half: Vec<f64> = (0..=64).map(|at| 1.25e-4 * f64::from(at) - 8e-3).collect();
+    let normal: Vec<f64> = noise(65, 9)
+        .iter()
+        .map(|noise| 1.0 + 0.02 * noise)
+        .collect();
+    let record = Record::new("half", &half, Force::new(&[0.0; 65], &normal)).unwrap();
+    let sweep = at_place(&bank, &record, None);
+    let (answer, _) = RobustQuestion::default()
+        .locate(&bank, None, &[sweep])
+        .unwrap();
+    assert_near(answer.thetas[16], 0.0, 1e-9);
+    assert!(answer.thetas[4].abs() > 1e-3, "{:?}", answer.thetas);
 }
 
 // Verifies: ROB-044.

@@ -334,11 +334,17 @@ fn a_sensor_has_the_noise_offset_drift_and_steps_that_are_asked() {
         0.0,
         5.0 * (2.1_f64 / 2001.0).sqrt(),
     );
-    assert_near(
-        sd(&beside(&found.depths, &calm.depths)),
-        1e-5,
-        5e-5 / 4002_f64.sqrt(),
-    );
+    let of_depth = beside(&found.depths, &calm.depths);
+    assert_near(sd(&of_depth), 1e-5, 5e-5 / 4002_f64.sqrt());
+    // It is none of the noise of a force, of which a part 1 − 0.36 is new.
+    for (noise, size) in &pairs {
+        let together: f64 = of_depth.iter().zip(noise).map(|(a, b)| a * b).sum();
+        assert_near(
+            together / 2001.0 / (1e-5 * size),
+            0.0,
+            5.0 / 2001_f64.sqrt(),
+        );
+    }
     assert_eq!(noisy.record(3).unwrap(), found);
     assert_ne!(noisy.record(4).unwrap().forces, found.forces);
     assert_ne!(
@@ -387,6 +393,20 @@ fn a_sensor_has_the_noise_offset_drift_and_steps_that_are_asked() {
     // Five standard errors of 800.
     assert_near(sd(&offsets) / 0.3, 1.0, 5.0 / 40.0);
     assert_near(sd(&drifts) / 0.1, 1.0, 5.0 / 40.0);
+    // Offset and drift of either force are four numbers, none of which tells another.
+    let of = |list: &[f64], first: usize| list.iter().skip(first).step_by(2).copied().collect();
+    let four: [Vec<f64>; 4] = [
+        of(&offsets, 0),
+        of(&offsets, 1),
+        of(&drifts, 0),
+        of(&drifts, 1),
+    ];
+    for (number, one) in four.iter().enumerate() {
+        for other in &four[..number] {
+            let product: f64 = one.iter().zip(other).map(|(a, b)| a * b).sum();
+            assert_near(product / 400.0 / (sd(one) * sd(other)), 0.0, 5.0 / 20.0);
+        }
+    }
 
     let coarse = Simulation {
         sensor: Sensor {
@@ -406,7 +426,8 @@ fn a_sensor_has_the_noise_offset_drift_and_steps_that_are_asked() {
 #[test]
 fn a_record_is_read_back_as_it_was_written() {
     let gel = spring(400.0);
-    let path = Path::passes(&[1e-3, 2.5e-3], [-2e-3, 2e-3], 10e-3, 100.0).unwrap();
+    // Positions that no few digits tell: 97 µm apart.
+    let path = Path::passes(&[1e-3, 2.5e-3], [-2e-3, 2e-3], 9.712_345e-3, 100.0).unwrap();
     let found = simulation(&gel, &path).record(1).unwrap();
     let read = |text: &str| -> Record {
         Trace::from_csv(text, "r.csv")
@@ -415,7 +436,7 @@ fn a_record_is_read_back_as_it_was_written() {
             .unwrap()
     };
     let record = read(&found.to_csv(true));
-    for sample in 0..82 {
+    for sample in 0..found.times.len() {
         assert_near(record.positions()[sample], found.positions[sample], 1e-9);
         assert_near(record.depths().unwrap()[sample], found.depths[sample], 1e-9);
         assert_near(

@@ -186,6 +186,16 @@ mod tests {
 
     // Verifies: CLI-182.
     #[test]
+    fn a_sample_is_read_as_the_first_one() {
+        let more = [
+            r#"{"position_mm": 2, "normal_force_n": 1}"#,
+            r#"{"position_mm": 3, "depth_mm": 9, "lateral_force_n": 7, "normal_force_n": 4}"#,
+        ];
+        assert_eq!(read(&more).unwrap(), [[2e-3, 0.0, 1.0], [3e-3, 0.0, 4.0]]);
+    }
+
+    // Verifies: CLI-182.
+    #[test]
     fn a_missing_number_makes_the_sample_missing() {
         let texts = [
             &[

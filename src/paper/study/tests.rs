@@ -76,6 +76,26 @@ fn a_quantity_that_does_not_vary_has_no_indices() {
     assert_eq!(indices(&[&[1.0, 2.0, 2.0][..]], 1), None);
 }
 
+// A change with the other sign has the other index, and its interval is turned round.
+// Verifies: STU-040.
+#[test]
+fn an_interval_leaves_out_as_much_above_as_below() {
+    // Multiples of 1/64, which are exact.
+    let number = |row: u32, factor: u32| f64::from(row * factor % 61) / 64.0;
+    let row = |row: u32| {
+        let [a, b, mixed] = [7, 19, 23].map(|factor| number(row, factor));
+        [a, b, mixed, 2.0 * a - mixed]
+    };
+    let rows: Vec<[f64; 4]> = (1..=60).map(row).collect();
+    let rows: Vec<&[f64]> = rows.iter().map(|row| &row[..]).collect();
+    let found = indices(&rows, 3).unwrap();
+    let [one, other] = [0, 1].map(|group: usize| found[group].first_order);
+    assert!(one.lower < one.upper);
+    for (end, mirrored) in [(one.lower, other.upper), (one.upper, other.lower)] {
+        assert_near(end, -mirrored, 1e-15);
+    }
+}
+
 fn correlation(one: &str, other: &str, coefficient: f64) -> Correlation {
     Correlation {
         inputs: [one, other].map(String::from),
@@ -110,8 +130,14 @@ fn each_sample_has_one_role_and_the_points_fill_the_unit_cube_evenly() {
         }
     }
     // A mixed sample has one group of the second, and all else of the first.
-    let [first, second, mixed] = [Role::First(9), Role::Second(9), Role::Mixed(9, 0)].map(at);
-    assert_eq!(mixed, [second[0], first[1], second[2], first[3]]);
+    let [first, second] = [Role::First(9), Role::Second(9)].map(at);
+    for (group, inputs) in design.groups().iter().enumerate() {
+        let of = |input| match inputs.contains(&input) {
+            true => second[input],
+            false => first[input],
+        };
+        assert_eq!(at(Role::Mixed(9, group)), [0, 1, 2, 3].map(of), "{group}");
+    }
     assert_eq!(at(Role::Median(2)), [0.5; 4]);
     assert_eq!(at(Role::Slope(1, 0)), [0.5, 0.25, 0.5, 0.5]);
 }

@@ -38,6 +38,34 @@ fn a_tolerance_ends_where_it_says() {
     assert!(Limit::stated(Tolerance::Ulp(1.0), 10.0).accepts(1.0, one_up.next_up()));
 }
 
+// Verifies: VEC-004.
+#[test]
+fn a_tolerance_is_of_one_kind_and_at_least_0_with_its_reason() {
+    let read = |text: Value| serde_json::from_value::<Tolerance>(text);
+    for kind in ["ulp", "absolute", "relative"] {
+        let of = |size: f64, reason: &str| json!({kind: size, "unit": "N", "reason": reason});
+        assert!(read(of(0.0, "exact")).is_ok());
+        for (size, reason, words) in [
+            (-0.5, "half", "-0.5 is below 0"),
+            (0.5, "", "needs a reason"),
+            (0.5, " \t", "needs a reason"),
+        ] {
+            let error = read(of(size, reason)).unwrap_err().to_string();
+            assert!(error.contains(words), "{kind}: {error}");
+        }
+    }
+    let without_unit = json!({"absolute": 1.0, "reason": "r"});
+    let two = json!({"ulp": 1.0, "relative": 1.0, "reason": "r"});
+    for (text, words) in [
+        (without_unit, "needs a unit"),
+        (two, "needs one of"),
+        (json!({}), "reason"),
+    ] {
+        let error = read(text).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
+}
+
 // Verifies: VEC-004, ORA-046.
 #[test]
 fn each_number_of_a_list_has_its_own_tolerance() {
@@ -394,7 +422,8 @@ fn a_wrong_answer_has_a_class() {
 // Verifies: ORA-050.
 #[test]
 fn the_xml_counts_the_cases_that_it_holds() {
-    let suite = two_groups();
+    let mut suite = two_groups();
+    suite.groups[1].cases[0].comment = "less < more".into();
     let mut outcomes = one_of_each();
     // Skipped, right, acceptable; range, protocol, mathematics, which is accepted.
     outcomes.reverse();
@@ -405,7 +434,9 @@ fn the_xml_counts_the_cases_that_it_holds() {
         ..Measure::exact()
     };
     let xml = junit(&verdict(&suite, &measure, outcomes), &suite);
-    assert!(xml.contains("accepted, known &lt;&amp;&gt;"), "{xml}");
+    for escaped in ["accepted, known &lt;&amp;&gt;", "less &lt; more"] {
+        assert!(xml.contains(escaped), "{xml}");
+    }
     let (_, whole) = xml.split_once('\n').unwrap();
     let parts: Vec<&str> = xml.split("<testsuite").collect();
     let &[_, _, a, b] = &parts[..] else {

@@ -33,7 +33,7 @@ const LIMITS: &str = include_str!("../../../../spec/limits.md");
 const SUPPLY_CHAIN: &str = include_str!("../../../../spec/supply-chain.md");
 
 /// The sections in their order: what the contents link to, and their headings.
-const SECTIONS: [(&str, &str); 14] = [
+const SECTIONS: [(&str, &str); 15] = [
     ("context", "Context of use and claims"),
     ("evidence", "Evidence by requirement"),
     ("results", "Results of the checks"),
@@ -41,6 +41,7 @@ const SECTIONS: [(&str, &str); 14] = [
     ("model", "Computational model: credibility"),
     ("rates", "Error rates in simulated records"),
     ("ledger", "Ledger of the statistics battery"),
+    ("power", "Power of the tests"),
     ("proofs", "Scope of the proofs"),
     ("kani", "Results of Kani"),
     ("plan", "Verification plan"),

@@ -1,5 +1,6 @@
 use super::*;
 use crate::evidence::{Soak, Verdict};
+use crate::planted::{Planted, Power};
 use crate::test_run::{End, Entry, Requirement, SCHEMA, TestRun, evidence_by_requirement};
 use crate::{Figure, Outcome, claims, components};
 use palpate::version::Build;
@@ -34,6 +35,7 @@ fn evidence(outcomes: Vec<Outcome>, left_out: Vec<&'static str>) -> Evidence {
         requirements: Vec::new(),
         components: components::locked(),
         bill_of_materials: None,
+        planted: None,
     }
 }
 
@@ -120,6 +122,34 @@ fn a_soak_that_fails_is_a_failure_and_tells_how_to_repeat_it() {
     assert!(page.contains("check x rejects &#60;it&#62;"));
     assert!(page.contains("3 batteries with seeds from 7 on"));
     assert!(page.contains("with probability 2.0e−6 at most"));
+}
+
+#[test]
+fn the_power_of_the_tests_stands_in_the_page_if_it_is_given() {
+    let mut evidence = evidence(vec![outcome("fem.good", 0.0)], Vec::new());
+    assert!(dossier(&evidence).contains("does not show how much the tests find"));
+    evidence.planted = Some(Planted {
+        commit: "0123abcd".into(),
+        confidence: 0.95,
+        power: vec![Power {
+            of: "core".into(),
+            defects: 32,
+            found: 19,
+            by_own: 11,
+            lower: 0.4064,
+            upper: 0.7630,
+        }],
+    });
+    let page = dossier(&evidence);
+    assert!(!page.contains("does not show how much the tests find"));
+    assert!(page.contains("at a confidence of 95 %") && page.contains("<code>0123abcd</code>"));
+    let (_, row) = page.split_once("<th scope=\"row\">core</th>").unwrap();
+    let (row, _) = row.split_once("</tr>").unwrap();
+    let numbers: Vec<&str> = row
+        .split('>')
+        .filter_map(|cell| cell.strip_suffix("</td"))
+        .collect();
+    assert_eq!(numbers, ["32", "11", "19", "59.4 %", "40.6 % to 76.3 %"]);
 }
 
 #[test]

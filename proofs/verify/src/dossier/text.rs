@@ -46,6 +46,11 @@ pub fn share(figure: &Figure) -> String {
     text + &bounds(figure)
 }
 
+/// A share in percent.
+pub fn percent(share: &f64) -> String {
+    format!("{} %", trimmed(100.0 * share, 1))
+}
+
 /// A count.
 pub fn count(value: &usize) -> String {
     number(*value as f64)

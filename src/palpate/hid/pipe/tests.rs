@@ -218,6 +218,19 @@ fn an_output_that_nobody_reads_ends_the_session() {
     assert!(end.starts_with("stopped: pipe: write: "), "{end}");
 }
 
+// Verifies: HID-110.
+#[test]
+fn a_force_leaves_at_once_through_an_output_that_buffers() {
+    let (sender, sent) = channel();
+    let output = std::io::BufWriter::new(Noting(sender));
+    let (input, mut to) = pipe().unwrap();
+    to.write_all(&PAPER.encode()).unwrap();
+    let mut device = PipeDevice::open(input, output).unwrap();
+    device.write(&ForceReport::default()).unwrap();
+    let sent: Vec<u8> = sent.try_iter().collect();
+    assert_eq!(sent, ForceReport::default().encode());
+}
+
 // Elsewhere a thread reads, when it may.
 // Verifies: HID-111.
 #[cfg(unix)]

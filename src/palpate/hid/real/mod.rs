@@ -174,6 +174,23 @@ fn is_interrupted(error: &HidError) -> bool {
     matches!(error, HidError::IoError { error } if error.kind() == std::io::ErrorKind::Interrupted)
 }
 
+/// What `read` gives, which after an interruption is asked again for what is left of `timeout`.
+///
+/// Implements: HID-033.
+fn within<T>(
+    timeout: Duration,
+    mut read: impl FnMut(i32) -> Result<T, HidError>,
+) -> Result<T, HidError> {
+    let began = Instant::now();
+    loop {
+        let left = milliseconds(timeout.saturating_sub(began.elapsed()));
+        match read(left) {
+            Err(error) if is_interrupted(&error) => {}
+            read => return read,
+        }
+    }
+}
+
 impl HapticDevice for RealDevice {
     /// Implements: HID-080, HID-085.
     fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
@@ -190,19 +207,14 @@ impl HapticDevice for RealDevice {
     }
 
     fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
-        let began = Instant::now();
         let mut bytes = [0; LONGEST];
-        loop {
-            let left = milliseconds(timeout.saturating_sub(began.elapsed()));
-            match self.device.read_timeout(&mut bytes, left) {
-                Ok(0) => return Ok(Received::Nothing),
-                Ok(length) => {
-                    let report = PositionReport::decode(&bytes[..length.min(LONGEST)]);
-                    return Ok(report.map_or_else(Received::Garbage, Received::Report));
-                }
-                Err(error) if is_interrupted(&error) => {}
-                Err(error) => return Err(self.failed("read", &message(&error))),
+        match within(timeout, |left| self.device.read_timeout(&mut bytes, left)) {
+            Ok(0) => Ok(Received::Nothing),
+            Ok(length) => {
+                let report = PositionReport::decode(&bytes[..length.min(LONGEST)]);
+                Ok(report.map_or_else(Received::Garbage, Received::Report))
             }
+            Err(error) => Err(self.failed("read", &message(&error))),
         }
     }
 

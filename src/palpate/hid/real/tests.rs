@@ -131,6 +131,31 @@ fn a_timeout_is_never_shorter_than_asked_for() {
 
 // Verifies: HID-033.
 #[test]
+fn a_read_that_is_interrupted_waits_for_what_is_left() {
+    let mut asked = Vec::new();
+    let read = within(Duration::from_secs(60), |left| {
+        asked.push(left);
+        std::thread::sleep(Duration::from_millis(20));
+        match asked.len() {
+            4 => Ok(7),
+            _ => Err(HidError::from(std::io::Error::from(ErrorKind::Interrupted))),
+        }
+    });
+    assert_eq!(read.unwrap(), 7);
+    // Each began 20 ms or more after the one before.
+    assert!(asked[0] <= 60_000);
+    assert!(
+        asked.windows(2).all(|pair| pair[1] <= pair[0] - 19),
+        "{asked:?}"
+    );
+    let other = within(Duration::ZERO, |_| -> Result<(), HidError> {
+        Err(HidError::from(std::io::Error::from(ErrorKind::TimedOut)))
+    });
+    assert!(other.is_err());
+}
+
+// Verifies: HID-033.
+#[test]
 fn a_write_in_part_is_a_failure() {
     let all = ForceReport::LENGTH;
     assert!(all_sent(all).is_ok());

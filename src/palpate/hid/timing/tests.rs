@@ -56,6 +56,10 @@ fn a_paced_device_counts_how_late_it_was() {
 #[test]
 fn a_timing_that_ends_early_is_an_error() {
     let told = |timing: Result<Timing, Refusal>| timing.unwrap_err().to_string();
+    assert_eq!(
+        timing(2995, Duration::ZERO, vec![]).unwrap().judged.cycles,
+        2995
+    );
     let few = told(timing(2994, Duration::ZERO, vec![]));
     let expected =
         "2994 cycles are too few; measure at least 2995 for this percentile and confidence";

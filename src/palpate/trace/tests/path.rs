@@ -73,6 +73,23 @@ fn a_column_of_depths_makes_a_path() {
     assert!(Trace::from_csv(back, "t.csv").is_err());
 }
 
+// Verifies: TRC-081.
+#[test]
+fn the_lists_of_a_path_have_one_length() {
+    for lengths in [
+        [1, 2, 2],
+        [2, 1, 2],
+        [2, 3, 2],
+        [2, 0, 2],
+        [2, 2, 1],
+        [2, 2, 3],
+    ] {
+        let [x, depths, normal] = lengths.map(|length| vec![1e-3; length]);
+        let path = Record::along("t.csv", &x, &depths, Force::new(&[][..], &normal));
+        assert!(path.is_err(), "{lengths:?}");
+    }
+}
+
 // Verifies: TRC-082, MAP-090.
 #[test]
 fn forces_are_those_of_each_pose() {

@@ -289,6 +289,22 @@ fn figure_6_tells_layers_and_inclusions_apart() {
     };
     let found = ["#56B4E9", "#D3EAD4", "#FAF3E0", "#E69F00"].map(paths);
     assert_eq!(found, [0, 1, 1, 2]);
+    // The words are of an inclusion where the paper's gel has one.
+    for (name, keeps) in [("2.6", true), ("none", false)] {
+        let mut run = paper_run();
+        run.deformed.phantom = Phantom::builtin(name).unwrap();
+        let made = made(&run);
+        let figure = made
+            .figures
+            .iter()
+            .find(|of| of.file_name.starts_with("figure-6"));
+        let caption = &figure.unwrap().caption;
+        assert_eq!(
+            caption.contains("The inclusion keeps its shape"),
+            keeps,
+            "{caption}"
+        );
+    }
 }
 
 /// Upright bars with their width (drawing units), for a panel whose `range` of per cent is `height` units high.
@@ -368,6 +384,7 @@ fn a_measured_map_is_figure_7_and_a_computed_one_is_refused() {
     let mut figures = figures.iter();
     let seventh = figures.find(|figure| figure.file_name.starts_with("figure-7"));
     assert_has(&seventh.unwrap().caption, "those data are not available");
+    assert_has(&seventh.unwrap().alt, "lateral position, 2 curves each");
     run.measured = vec![computed_map("8.6", 0.5)];
     let error = findings(&run).unwrap_err().to_string();
     assert_has(&error, "\"8.6\"|computed");

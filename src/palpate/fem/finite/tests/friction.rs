@@ -1,9 +1,11 @@
 //! Friction along paths.
 
+use faer::Mat;
 use nalgebra::Vector2;
 
+use super::super::contact::Patch;
 use super::super::{Equilibrium, Friction, Touch};
-use super::{at, builtin, coarse, path};
+use super::{at, builtin, coarse, path, pose};
 use palpate_asserts::assert_near;
 
 // Verifies: FIN-010, FIN-011.
@@ -101,4 +103,26 @@ fn a_path_ends_in_steady_sliding_and_has_its_mirror_image() {
         assert_near(image.force.normal, state.force.normal, 1e-8);
         assert_near(image.force.lateral, -state.force.lateral, 1e-8);
     }
+}
+
+// A node on the probe's lowest point that is held by 0.05 N upwards.
+// Verifies: FIN-005.
+#[test]
+fn a_node_that_the_probe_would_have_to_pull_comes_off() {
+    let stiffness = Mat::from_fn(2, 2, |a, b| if a == b { 100.0 } else { 0.0 });
+    let patch = Patch {
+        pose: pose(1.0, 0.0),
+        radius: 6.5e-3,
+        friction: Friction::None,
+        positions: &[[0.0, 0.0]],
+        displacements: &[0.0, -1e-3],
+        forces: &[0.0, 0.05],
+        stiffness: &stiffness,
+        arcs: &[0.0],
+    };
+    let settled = patch.settle(&[Touch::Slips(0.0)]).unwrap();
+    assert_eq!(settled.touches, [Touch::Apart]);
+    assert_eq!(settled.forces, [0.0, 0.0]);
+    // Let go, over 100 N/m.
+    assert_near(settled.displacements[1], -1.5e-3, 1e-15);
 }
