@@ -38,7 +38,7 @@ fn every_figure_is_there() {
     let names = made.figures.iter().map(|figure| &*figure.file_name);
     let names: Vec<_> = names.map(|name| name.trim_end_matches(".svg")).collect();
     let expected = "figure-1 figure-6 signals figure-5-none figure-5-2.6 figure-5-4.6 figure-5-6.6 figure-5-8.6 \
-        figure-2 figure-3 figure-4 figure-9 gamma figure-8 figure-10 figure-11 figure-12 figure-13 bridge";
+        figure-2 figure-3 figure-4 figure-9 gamma paths figure-8 figure-10 figure-11 figure-12 figure-13 bridge";
     assert_eq!(names.join(" "), expected);
 }
 
@@ -110,9 +110,9 @@ fn studies_of_any_size_have_a_report() {
     run.reference = map(Phantom::builtin("none").ok(), &[0.0], |_| 0.0, |_| 0.0);
     run.maps = vec![run.reference.clone()];
     assert_eq!(made(&run).figures.len(), 14);
-    // Signals, one figure for each map, Figures 1, 6; 2, 3, 4, 9; γ; 8 and 10 to 13.
+    // Signals, one figure for each map, Figures 1, 6; 2, 3, 4, 9; γ, paths; 8 and 10 to 13.
     let figures = made(&hostile_run()).figures;
-    assert_eq!(figures.len(), 1 + 1 + HOSTILE.len() + 2 + 2 + 4 + 1 + 5);
+    assert_eq!(figures.len(), 1 + 1 + HOSTILE.len() + 2 + 2 + 4 + 2 + 5);
 }
 
 // Verifies: REP-005.
