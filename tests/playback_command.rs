@@ -5,7 +5,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use crate::program::{Place, text};
+use crate::program::{Place, send, text};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use palpate::stats::random::Generator;
@@ -227,9 +227,7 @@ fn signals_end_a_session_as_asked() {
         let player = player.stdout(Stdio::piped()).stderr(Stdio::piped());
         let player = player.spawn().unwrap();
         std::thread::sleep(Duration::from_millis(1500));
-        let [signal, id] = [format!("-{signal}"), player.id().to_string()];
-        let kill = Command::new("kill").args([&signal, &id]).status();
-        assert!(kill.unwrap().success());
+        send(signal, &player);
         let output = player.wait_with_output().unwrap();
         let said = text(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{signal}: {said}");

@@ -1,10 +1,10 @@
 //! `palpate watch`, end to end, in pipes.
 
 use std::io::{BufRead, BufReader, Write};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::OnceLock;
 
-use crate::program::{Place, text};
+use crate::program::{Place, send, text};
 use palpate_asserts::assert_has;
 use serde_json::{Value, json};
 
@@ -212,11 +212,7 @@ fn an_answer_follows_each_sample_at_once_and_a_signal_ends_it_with_the_last() {
         );
     }
     // The input stays open.
-    let signal = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(signal.success());
+    send("INT", &child);
     let answer = next(&mut output);
     assert_eq!(
         (&answer["samples"], &answer["is_last"]),

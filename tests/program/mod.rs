@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output};
 
 /// The program.
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_palpate-under-test");
@@ -12,11 +12,17 @@ pub struct Place(PathBuf);
 
 impl Place {
     pub fn new(test: &str) -> Place {
-        // Under cargo-nextest each test is a process, and several may ask for the same folder.
-        let process = std::env::var("NEXTEST_TEST_NAME").unwrap_or_default();
+        // Several tests may ask for the same folder: under cargo-nextest each is a process, else a thread of its name.
+        let thread = || {
+            std::thread::current()
+                .name()
+                .unwrap_or_default()
+                .to_string()
+        };
+        let asking = std::env::var("NEXTEST_TEST_NAME").unwrap_or_else(|_| thread());
         let path = Path::new(env!("CARGO_TARGET_TMPDIR"))
             .join(test)
-            .join(process.replace(':', "-"));
+            .join(asking.replace(':', "-"));
         let _ = fs::remove_dir_all(&path);
         fs::create_dir_all(&path).expect("a folder for the test");
         Place(path)
@@ -69,6 +75,18 @@ impl Place {
         let refused = |words: &str| self.refused(&line(words));
         palpate_asserts::assert_cases("refused/command_lines.txt", part, refused);
     }
+}
+
+/// Sends a signal, by the shell's own command: not every system has a program for it.
+pub fn send(signal: &str, to: &Child) {
+    let line = format!("kill -{signal} {}", to.id());
+    assert!(
+        Command::new("sh")
+            .args(["-c", &line])
+            .status()
+            .unwrap()
+            .success()
+    );
 }
 
 pub fn text(bytes: &[u8]) -> &str {
