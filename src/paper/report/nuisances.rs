@@ -11,19 +11,18 @@ use palpate::trace::{Unknown, in_words, nuisances};
 
 /// What may be unknown, from nothing on. The level of the noise, which may be unknown too, takes nothing from γ.
 const UNKNOWN: [&[Unknown]; 6] = {
-    use Unknown::{Depth, Drift, Gain, Offset};
-    [
-        &[],
-        &[Offset],
-        &[Offset, Drift],
-        &[Gain],
-        BY_DEFAULT,
-        &[Offset, Drift, Gain, Depth],
-    ]
+    use Unknown::{Drift, Gain, Offset};
+    [&[], &[Offset], &[Offset, Drift], &[Gain], BY_DEFAULT, ALL]
 };
 
 /// What `palpate detect` takes as unknown, but for the level of the noise, unless it is told more.
 pub(super) const BY_DEFAULT: &[Unknown] = &[Unknown::Offset, Unknown::Drift, Unknown::Gain];
+
+/// All that it may take as unknown, but for the level of the noise.
+pub(super) const ALL: &[Unknown] = {
+    use Unknown::{Depth, Drift, Gain, Offset};
+    &[Offset, Drift, Gain, Depth]
+};
 
 /// What is left of γ where more is unknown than the noise.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,7 +1,7 @@
 //! Which path of the probe tells most of an inclusion, of paths that take equally long.
 
 use super::plan::{Plan, Words, over};
-use crate::report::nuisances::BY_DEFAULT;
+use crate::report::nuisances::{ALL, BY_DEFAULT};
 use crate::report::text::{fixed, joined, millimetres};
 use crate::report::{Findings, Run, Topic};
 use palpate::chart::style::PALETTE;
@@ -15,16 +15,7 @@ const SAMPLES: u32 = 640;
 /// Pixels for one path.
 const ROW: i32 = 44;
 /// What may be unknown.
-const UNKNOWN: [&[Unknown]; 3] = [
-    &[],
-    BY_DEFAULT,
-    &[
-        Unknown::Offset,
-        Unknown::Drift,
-        Unknown::Gain,
-        Unknown::Depth,
-    ],
-];
+const UNKNOWN: [&[Unknown]; 3] = [&[], BY_DEFAULT, ALL];
 
 /// A path: where the probe is after a share of its time, as shares of its length and of its greatest depth.
 type Shape = fn(f64) -> [f64; 2];
