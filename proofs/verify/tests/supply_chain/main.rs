@@ -4,6 +4,8 @@ mod build_script;
 mod dependencies;
 mod linked;
 mod package;
+#[path = "../../../../tests/witness/present.rs"]
+mod present;
 
 use std::process::Command;
 
