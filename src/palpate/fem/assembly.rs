@@ -1,6 +1,7 @@
 //! The global stiffness matrix over the free displacements, in elimination order.
 
 use faer::sparse::{SparseColMat, Triplet};
+use faer::traits::pulp::Arch;
 
 use super::FemError;
 use super::element::StiffnessRule;
@@ -112,39 +113,53 @@ impl StiffnessMatrix {
         (unknown != HELD).then_some(unknown as usize)
     }
 
-    /// f − K u for `W` displacement fields and `W` loads at once, one row of `W` numbers per unknown, and its size
-    /// ‖f − K u‖ / ‖f‖ in each; absolute, N, where there is no load.
-    pub(super) fn residual<const W: usize>(
+    /// Subtracts K u from the loads in `force`, N, for `B` × `L` displacement fields at once, one row for each unknown. Returns
+    /// ‖f − K u‖ / ‖f‖ of each; absolute, N, where there is no load.
+    pub(super) fn residual<const L: usize, const B: usize>(
         &self,
-        u: &[[f64; W]],
-        force: &[[f64; W]],
-    ) -> (Vec<[f64; W]>, [f64; W]) {
-        let mut residual = force.to_vec();
-        for j in 0..self.unknowns() {
-            for (i, &value) in self.upper.row_idx_of_col(j).zip(self.upper.val_of_col(j)) {
-                for w in 0..W {
-                    residual[i][w] -= value * u[j][w];
-                }
-                if i != j {
-                    for w in 0..W {
-                        residual[j][w] -= value * u[i][w];
+        u: &[[[f64; L]; B]],
+        force: &mut [[[f64; L]; B]],
+    ) -> [[f64; L]; B] {
+        Arch::new().dispatch(|| {
+            let loads = norms(force);
+            for j in 0..self.unknowns() {
+                let entries = self.upper.row_idx_of_col(j).zip(self.upper.val_of_col(j));
+                for block in 0..B {
+                    let (at, mut left) = (u[j][block], force[j][block]);
+                    for (i, &value) in entries.clone() {
+                        for lane in 0..L {
+                            left[lane] -= value * u[i][block][lane];
+                        }
+                        if i != j {
+                            for lane in 0..L {
+                                force[i][block][lane] -= value * at[lane];
+                            }
+                        }
                     }
+                    force[j][block] = left;
                 }
+            }
+            let mut relative = norms(force);
+            for (left, load) in (relative.as_flattened_mut().iter_mut()).zip(loads.as_flattened()) {
+                if *load != 0.0 {
+                    *left /= load;
+                }
+            }
+            relative
+        })
+    }
+}
+
+/// The size of each of `B` × `L` fields.
+#[inline(always)]
+fn norms<const L: usize, const B: usize>(fields: &[[[f64; L]; B]]) -> [[f64; L]; B] {
+    let mut squares = [[0.0; L]; B];
+    for row in fields {
+        for (squares, values) in squares.iter_mut().zip(row) {
+            for lane in 0..L {
+                squares[lane] += values[lane] * values[lane];
             }
         }
-        let [left, loads] = [&residual, force].map(|rows| {
-            let mut squares = [0.0; W];
-            for row in rows {
-                for w in 0..W {
-                    squares[w] += row[w] * row[w];
-                }
-            }
-            squares.map(libm::sqrt)
-        });
-        let relative = core::array::from_fn(|w| match loads[w] {
-            0.0 => left[w],
-            load => left[w] / load,
-        });
-        (residual, relative)
     }
+    squares.map(|lanes| lanes.map(libm::sqrt))
 }

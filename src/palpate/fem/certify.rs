@@ -4,7 +4,7 @@
 use std::convert::Infallible;
 
 use super::{FemError, Model};
-use crate::force_map::{Discretization, ForceMap, Matrix};
+use crate::force_map::{Discretization, ForceMap, ForceTable, Matrix};
 use crate::stats::tails::halved;
 
 /// Ratios of the sizes of the three meshes, middle over fine and coarse over middle.
@@ -33,16 +33,16 @@ pub fn certified_map(
     solved: &dyn Fn(usize),
 ) -> Result<ForceMap, FemError> {
     let finest = model.map(depths, laterals, solved)?;
-    let coarser = |ratio: f64| -> Result<(usize, ForceMap), FemError> {
+    let coarser = |ratio: f64| -> Result<(usize, ForceTable), FemError> {
         let size = ratio * model.mesh_size();
         let coarser = Model::new(model.phantom(), size, model.surface().contact)?;
-        let map = coarser.map(depths, laterals, solved)?;
-        Ok((coarser.mesh().nodes.len(), map))
+        let table = coarser.table(depths, laterals, solved)?;
+        Ok((coarser.mesh().nodes.len(), table))
     };
     let (middle_nodes, middle) = coarser(MESH_RATIOS[0])?;
     let (coarse_nodes, coarse) = coarser(MESH_RATIOS[0] * MESH_RATIOS[1])?;
-    let (fine, middle) = (finest.table().both()?, middle.table().both()?);
-    let bands = fine.zip(middle).zip(coarse.table().both()?);
+    let (fine, middle) = (finest.table().both()?, middle.both()?);
+    let bands = fine.zip(middle).zip(coarse.both()?);
     let bands = bands.map(|((fine, middle), coarse)| {
         Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
             band([fine, middle, coarse].map(|force| force.row(row)[column]))

@@ -161,17 +161,17 @@ impl Factor {
         matrix: &StiffnessMatrix,
         force: &[f64],
     ) -> Result<(Vec<f64>, f64), FemError> {
-        let force = force.as_chunks::<1>().0;
-        let mut u = force.to_vec();
-        self.solve_once(u.as_flattened_mut())?;
-        let (mut correction, _) = matrix.residual(&u, force);
-        self.solve_once(correction.as_flattened_mut())?;
-        for ([u], [correction]) in u.iter_mut().zip(&correction) {
+        let force = force.as_chunks::<1>().0.as_chunks::<1>().0;
+        let (mut u, mut correction, mut rest) = (force.to_vec(), force.to_vec(), force.to_vec());
+        self.solve_once(u.as_flattened_mut().as_flattened_mut())?;
+        matrix.residual(&u, &mut correction);
+        self.solve_once(correction.as_flattened_mut().as_flattened_mut())?;
+        for ([[u]], [[correction]]) in u.iter_mut().zip(&correction) {
             *u += correction;
         }
-        let (_, [left]) = matrix.residual(&u, force);
+        let [[left]] = matrix.residual(&u, &mut rest);
         check_residual(left)?;
-        Ok((u.into_flattened(), left))
+        Ok((u.into_flattened().into_flattened(), left))
     }
 
     fn solve_once(&self, rhs: &mut [f64]) -> Result<(), FemError> {
@@ -188,20 +188,25 @@ impl Factor {
     }
 
     /// Given the surface displacements in the last rows of `u`, fills in the interior's, which carry no
-    /// load: Lᵀ u = (0, L_ssᵀ u_s). `W` displacement fields at once, one row of `W` numbers per unknown.
+    /// load: Lᵀ u = (0, L_ssᵀ u_s). `B` × `L` displacement fields at once, one row for each unknown.
     ///
     /// Implements: FEM-007.
-    pub(super) fn extend_to_interior<const W: usize>(
+    pub(super) fn extend_to_interior<const L: usize, const B: usize>(
         &self,
-        u: &mut [[f64; W]],
+        u: &mut [[[f64; L]; B]],
     ) -> Result<(), FemError> {
-        let n = u.len();
-        let mut u = MatMut::from_row_major_slice_mut(u.as_flattened_mut(), n, W);
+        let (n, fields) = (u.len(), B * L);
+        let u = u.as_flattened_mut().as_flattened_mut();
+        let mut u = MatMut::from_row_major_slice_mut(u, n, fields);
         let (mut interior, mut surface) = u.rb_mut().split_at_row_mut(n - self.surface.nrows());
         interior.fill(0.0);
         surface.copy_from(self.surface.transpose() * surface.rb());
         let factor = self.factor();
-        let mut memory = scratch(factor.symbolic().solve_in_place_scratch::<f64>(W, Par::Seq))?;
+        let mut memory = scratch(
+            factor
+                .symbolic()
+                .solve_in_place_scratch::<f64>(fields, Par::Seq),
+        )?;
         factor.l_transpose_solve_with_conj(Conj::No, u, Par::Seq, MemStack::new(&mut memory));
         Ok(())
     }

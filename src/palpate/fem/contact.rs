@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::traits::pulp::Arch;
 use faer::{Col, Mat, Par, Side};
 use nalgebra::Vector2;
 
@@ -79,9 +80,6 @@ impl Constraint {
     }
 }
 
-/// A direction at a point in contact.
-type Direction = fn(&Constraint) -> Vector2<f64>;
-
 /// The surface of a phantom, ready for contact.
 ///
 /// Implements: FEM-009, FEM-014.
@@ -94,8 +92,8 @@ pub struct Surface {
     /// Displacements of the contact points per force on them, m/N, both components of each point in turn; symmetric, on a
     /// symmetric mesh also in x, to the bit.
     pub compliance: Mat<f64>,
-    /// Displacements of the contact points per force on the nodes at the surface, m/N.
-    nodal: Mat<f64>,
+    /// The same of the nodes at the surface.
+    of_nodes: Mat<f64>,
     /// The probe.
     pub probe: Probe,
     /// How the gap is measured.
@@ -129,7 +127,7 @@ impl Tangent {
     /// Increments of λ, and slips, that mend the mismatch u − C (n λ) of the points in contact, m. `None` if an
     /// increment is not finite.
     fn solve(&self, mismatch: &[Vector2<f64>]) -> Option<(Col<f64>, Col<f64>)> {
-        let along = |direction: Direction| {
+        let along = |direction: fn(&Constraint) -> Vector2<f64>| {
             let project = |k: usize| direction(&self.constraints[k]).dot(&mismatch[k]);
             Col::from_fn(mismatch.len(), project)
         };
@@ -158,14 +156,26 @@ fn nodes_of(point: usize) -> [(usize, f64); 3] {
     ]
 }
 
+/// Adds to the displacements from place `first` on what forces at places do, each with its place, by the compliance of all places.
+fn push(u: &mut [[f64; 2]], compliance: &Mat<f64>, first: usize, forces: &[(usize, [f64; 2])]) {
+    Arch::new().dispatch(|| {
+        for (place, force) in forces {
+            let column = |k| &compliance.col_as_slice(2 * place + k)[2 * first..];
+            for ((u, x), y) in u
+                .as_flattened_mut()
+                .iter_mut()
+                .zip(column(0))
+                .zip(column(1))
+            {
+                *u += force[0] * x + force[1] * y;
+            }
+        }
+    });
+}
+
 impl Surface {
-    /// The surface of a mesh whose nodes there have the `compliance`.
-    pub(super) fn new(
-        mesh: &Mesh,
-        compliance: &Mat<f64>,
-        probe: Probe,
-        contact: Contact,
-    ) -> Surface {
+    /// The surface of a mesh whose nodes there have the compliance `of_nodes`.
+    pub(super) fn new(mesh: &Mesh, of_nodes: Mat<f64>, probe: Probe, contact: Contact) -> Surface {
         let (mut positions, mut lengths) = (Vec::new(), Vec::new());
         for edge in mesh.surface.windows(3).step_by(2) {
             let [left, right] = [edge[0], edge[2]].map(|node| mesh.nodes[node][0]);
@@ -175,31 +185,38 @@ impl Surface {
             }
         }
         let size = 2 * positions.len();
-        let nodal = Mat::from_fn(size, compliance.ncols(), |place, column| -> f64 {
-            let column = compliance.col_as_slice(column);
-            let [a, b, c] = nodes_of(place / 2).map(|(node, n)| n * column[2 * node + place % 2]);
-            a + b + c
-        });
-        let points = Mat::from_fn(size, size, |row, place| -> f64 {
-            let nodes = nodes_of(place / 2);
-            let [a, b, c] = nodes.map(|(node, n)| n * nodal[(row, 2 * node + place % 2)]);
-            a + b + c
-        });
+        let mut points = Mat::<f64>::zeros(size, size);
+        for place in 0..size {
+            let [a, b, c] = nodes_of(place / 2)
+                .map(|(node, n)| (n, of_nodes.col_as_slice(2 * node + place % 2)));
+            let pushed = a.1.iter().zip(b.1).zip(c.1);
+            let pushed: Vec<f64> =
+                (pushed.map(|((x, y), z)| a.0 * x + b.0 * y + c.0 * z)).collect();
+            for (row, u) in points.col_as_slice_mut(place).iter_mut().enumerate() {
+                let [a, b, c] = nodes_of(row / 2).map(|(node, n)| n * pushed[2 * node + row % 2]);
+                *u = a + b + c;
+            }
+        }
         let image = |place: usize| size - 2 - 2 * (place / 2) + place % 2;
         let both = |row: usize, column: usize| points[(row, column)] + points[(column, row)];
-        let compliance = Mat::from_fn(size, size, |row, column| {
-            let sign = if row % 2 == column % 2 { 1.0 } else { -1.0 };
-            if mesh.symmetric {
-                0.25 * (both(row, column) + sign * both(image(row), image(column)))
-            } else {
-                0.5 * both(row, column)
+        let mut compliance = Mat::zeros(size, size);
+        for column in 0..size {
+            for row in column..size {
+                let sign = if row % 2 == column % 2 { 1.0 } else { -1.0 };
+                let value = if mesh.symmetric {
+                    0.25 * (both(row, column) + sign * both(image(row), image(column)))
+                } else {
+                    0.5 * both(row, column)
+                };
+                compliance[(row, column)] = value;
+                compliance[(column, row)] = value;
             }
-        });
+        }
         Surface {
             positions,
             lengths,
             compliance,
-            nodal,
+            of_nodes,
             probe,
             contact,
         }
@@ -211,23 +228,20 @@ impl Surface {
         state: &ContactState,
         pose: Pose,
     ) -> (Vec<[f64; 2]>, Vec<[f64; 2]>) {
-        let loads = self.forces(state, pose);
-        let displacement = |column: usize| -> f64 {
-            let column = self.nodal.col_as_slice(column);
-            let term = |(i, f): &(usize, [f64; 2])| column[2 * i] * f[0] + column[2 * i + 1] * f[1];
-            loads.iter().map(term).sum()
-        };
-        let nodes = self.nodal.ncols() / 2;
+        let nodes = self.of_nodes.ncols() / 2;
         let mut forces = vec![[0.0; 2]; nodes];
-        for &(point, force) in &loads {
+        for (point, force) in self.forces(state, pose) {
             for (node, n) in nodes_of(point) {
                 for direction in 0..2 {
                     forces[node][direction] += n * force[direction];
                 }
             }
         }
-        let displacements = (0..nodes).map(|node| [0, 1].map(|k| displacement(2 * node + k)));
-        (displacements.collect(), forces)
+        let loads = forces.iter().copied().enumerate();
+        let loads: Vec<_> = loads.filter(|(_, force)| *force != [0.0; 2]).collect();
+        let mut displacements = vec![[0.0; 2]; nodes];
+        push(&mut displacements, &self.of_nodes, 0, &loads);
+        (displacements, forces)
     }
 
     /// The gap of a point displaced by `u`, its slope and how that turns; `None` where the circle has none.
@@ -273,7 +287,9 @@ impl Surface {
                 1..SIMULTANEOUS_CHANGES => 0.0,
                 _ => 1.0,
             };
-            if self.revise(&mut state, pose, reach.clone(), least) {
+            // Where the points in contact are foretold, forces come before the first look at them.
+            let is_foretold = iteration == 0 && !state.active.is_empty();
+            if is_foretold || self.revise(&mut state, pose, reach.clone(), least) {
                 self.settle(&mut state, pose, reach.clone())
                     .ok_or(failed(iteration))?;
                 (kept, elastic, step) = (None, None, f64::INFINITY);
@@ -322,7 +338,8 @@ impl Surface {
     /// gap, and the displacements under them. `None` if C_nn is singular or a point lies on the probe's axis.
     fn settle(&self, state: &mut ContactState, pose: Pose, reach: Range<usize>) -> Option<()> {
         let constraints = self.constraints(state, pose)?;
-        let pushed = self.between(state, &constraints, [Constraint::normal; 2]);
+        let normals: Vec<Vector2<f64>> = constraints.iter().map(Constraint::normal).collect();
+        let pushed = self.between(&state.active, [&normals; 2]);
         let onto = |k: usize| {
             let u = Vector2::from(state.displacements[state.active[k]]);
             constraints[k].normal.dot(&u) - constraints[k].gap
@@ -337,21 +354,13 @@ impl Surface {
     }
 
     /// Displacements of the points in contact along one direction each, per force along another, m/N.
-    fn between(
-        &self,
-        state: &ContactState,
-        constraints: &[Constraint],
-        [of, by]: [Direction; 2],
-    ) -> Mat<f64> {
-        let places = || state.active.iter().zip(constraints);
-        let mut compliance = Mat::zeros(constraints.len(), constraints.len());
-        for (column, (&j, constraint)) in places().enumerate() {
+    fn between(&self, active: &[usize], [of, by]: [&[Vector2<f64>]; 2]) -> Mat<f64> {
+        let mut compliance = Mat::zeros(active.len(), active.len());
+        for (column, (&j, by)) in active.iter().zip(by).enumerate() {
             let [by_x, by_y] = [0, 1].map(|k| self.compliance.col_as_slice(2 * j + k));
-            let by = by(constraint);
             let u = |row| by_x[row] * by.x + by_y[row] * by.y;
             let column = compliance.col_as_slice_mut(column).iter_mut();
-            for (to, (&i, constraint)) in column.zip(places()) {
-                let of = of(constraint);
+            for ((to, &i), of) in column.zip(active).zip(of) {
                 *to = of.x * u(2 * i) + of.y * u(2 * i + 1);
             }
         }
@@ -365,11 +374,12 @@ impl Surface {
     fn tangent(&self, state: &ContactState, pose: Pose) -> Option<Tangent> {
         let m = state.active.len();
         let constraints = self.constraints(state, pose)?;
-        let [normal, tangent]: [Direction; 2] = [Constraint::normal, Constraint::tangent];
-        let between = |of, by| self.between(state, &constraints, [of, by]);
-        let pushed = between(normal, normal).llt(Side::Lower).ok()?;
-        let across = between(tangent, normal);
-        let mut slid = between(tangent, tangent);
+        let normal: Vec<Vector2<f64>> = constraints.iter().map(Constraint::normal).collect();
+        let tangent: Vec<Vector2<f64>> = constraints.iter().map(Constraint::tangent).collect();
+        let between = |of, by| self.between(&state.active, [of, by]);
+        let pushed = between(&normal, &normal).llt(Side::Lower).ok()?;
+        let across = between(&tangent, &normal);
+        let mut slid = between(&tangent, &tangent);
         let mut w = across.transpose().to_owned();
         solve_lower_triangular_in_place(pushed.L(), w.as_mut(), Par::Seq);
         slid -= w.transpose() * &w;
@@ -425,19 +435,19 @@ impl Surface {
     /// Displacement of each point within reach under the present forces, of the others as they are, m.
     fn response(&self, state: &ContactState, pose: Pose, reach: Range<usize>) -> Vec<[f64; 2]> {
         let mut u = state.displacements.clone();
-        let within = u[reach.clone()].as_flattened_mut();
-        within.fill(0.0);
-        for (point, force) in self.forces(state, pose) {
-            let column = |k| &self.compliance.col_as_slice(2 * point + k)[2 * reach.start..];
-            for ((u, x), y) in within.iter_mut().zip(column(0)).zip(column(1)) {
-                *u += force[0] * x + force[1] * y;
-            }
-        }
+        u[reach.clone()].fill([0.0; 2]);
+        push(
+            &mut u[reach.clone()],
+            &self.compliance,
+            reach.start,
+            &self.forces(state, pose),
+        );
         u
     }
 
     /// Drops points in contact that would be pulled and adds points inside the probe, of those within reach, if they are at
-    /// least this part as bad as the worst. Returns whether the set changed.
+    /// least this part as bad as the worst. While the ends of the contact are pulled, points between them stay. Returns whether
+    /// the set changed.
     fn revise(
         &self,
         state: &mut ContactState,
@@ -453,7 +463,15 @@ impl Surface {
                 .constraint(i, state.displacements[i], pose)
                 .map_or(0.0, |constraint| constraint.gap + GAP_TOLERANCE),
         };
-        let violations: Vec<f64> = reach.clone().map(violation).collect();
+        let mut violations: Vec<f64> = reach.clone().map(violation).collect();
+        let is_pulled = |i: &&usize| state.pressures[**i] < 0.0;
+        let left = state.active.iter().take_while(is_pulled).count();
+        let right = state.active.iter().rev().take_while(is_pulled).count();
+        if (1..state.active.len()).contains(&(left + right)) {
+            for &i in &state.active[left..state.active.len() - right] {
+                violations[i - reach.start] = 0.0;
+            }
+        }
         let worst = violations.iter().copied().fold(0.0, f64::min);
         let is_large = |&(_, v): &(usize, f64)| v < 0.0 && v <= least * worst;
         for (i, _) in reach.zip(violations).filter(is_large) {

@@ -1,5 +1,7 @@
 //! What the gel does below the surface: displacement fields, and the checks on them.
 
+use faer::traits::pulp::Arch;
+
 use super::FemError;
 use super::assembly::StiffnessMatrix;
 use super::cholesky::Factor;
@@ -8,8 +10,11 @@ use super::mesh::Mesh;
 use super::size::SizeField;
 use crate::phantom::Geometry;
 
-/// How many poses are checked at once: the factor is read from memory once for all of them.
-pub(super) const BATCH: usize = 24;
+/// How many fields stand beside each other in memory.
+const LANES: usize = 8;
+/// How many times as many poses are checked at once: the factor is read from memory once for all of them.
+const BLOCKS: usize = 3;
+pub(super) const BATCH: usize = BLOCKS * LANES;
 
 /// Checks on the displacement field of one pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,15 +76,19 @@ pub(super) fn samples(
 }
 
 impl SamplingPoint {
-    /// ∂u_i/∂x_j of `W` fields, given by their unknowns and a row of zeros.
-    pub(super) fn gradient<const W: usize>(&self, u: &[[f64; W]]) -> [[[f64; W]; 2]; 2] {
-        let mut gradient = [[[0.0; W]; 2]; 2];
+    /// ∂u_i/∂x_j of `L` fields beside each other; `u` gives them at an unknown, and zeros behind the last one.
+    #[inline(always)]
+    pub(super) fn gradient<'a, const L: usize>(
+        &self,
+        u: impl Fn(usize) -> &'a [f64; L],
+    ) -> [[[f64; L]; 2]; 2] {
+        let mut gradient = [[[0.0; L]; 2]; 2];
         for (row, shape) in self.rows.iter().zip(self.shape.column_iter()) {
             for i in 0..2 {
-                let u = &u[row[i] as usize];
+                let u = u(row[i] as usize);
                 for j in 0..2 {
-                    for w in 0..W {
-                        gradient[i][j][w] += shape[j] * u[w];
+                    for lane in 0..L {
+                        gradient[i][j][lane] += shape[j] * u[lane];
                     }
                 }
             }
@@ -87,16 +96,22 @@ impl SamplingPoint {
         gradient
     }
 
-    /// The stretch of the circle on which the point is turned, in field `w`; 1 in plane strain.
-    fn circle<const W: usize>(&self, u: &[[f64; W]], w: usize) -> f64 {
-        let hoop = self.hoop.iter().flatten().zip(&self.rows);
-        1.0 + hoop
-            .map(|(of, row)| of * u[row[0] as usize][w])
-            .sum::<f64>()
+    /// The stretch of the circle on which the point is turned, in `L` fields; 1 in plane strain.
+    #[inline(always)]
+    fn circle<'a, const L: usize>(&self, u: impl Fn(usize) -> &'a [f64; L]) -> [f64; L] {
+        let mut stretch = [0.0; L];
+        for (of, row) in self.hoop.iter().flatten().zip(&self.rows) {
+            let u = u(row[0] as usize);
+            for lane in 0..L {
+                stretch[lane] += of * u[lane];
+            }
+        }
+        stretch.map(|stretch| 1.0 + stretch)
     }
 }
 
 /// det(I + ∇u) in the cross-section.
+#[inline(always)]
 pub(super) fn determinant(gradient: [[f64; 2]; 2]) -> f64 {
     (1.0 + gradient[0][0]) * (1.0 + gradient[1][1]) - gradient[0][1] * gradient[1][0]
 }
@@ -104,58 +119,108 @@ pub(super) fn determinant(gradient: [[f64; 2]; 2]) -> f64 {
 /// A vector at each node of the surface.
 type AtSurface = Vec<[f64; 2]>;
 
-/// Fills in and checks the fields of up to [`BATCH`] poses, given by displacements and loads of the nodes at the surface; below
-/// it no pose has a load.
-///
-/// Implements: FEM-008, FEM-013.
-pub(super) fn check(
-    matrix: &StiffnessMatrix,
-    factor: &Factor,
-    samples: &[SamplingPoint],
-    poses: &[(AtSurface, AtSurface)],
-) -> Result<Vec<FieldCheck>, FemError> {
-    let unknowns = matrix.unknowns();
-    // One more row than unknowns: the zeros of what is held.
-    let mut displacements = vec![[0.0; BATCH]; unknowns + 1];
-    let mut forces = vec![[0.0; BATCH]; unknowns];
-    for (w, (u, force)) in poses.iter().enumerate() {
-        let components = u.as_flattened().iter().zip(force.as_flattened());
-        for (place, (u, force)) in matrix.surface.iter().zip(components) {
-            if let Some(unknown) = *place {
-                displacements[unknown][w] = *u;
-                forces[unknown][w] = *force;
-            }
+/// A number for each of [`BATCH`] fields.
+type Row = [[f64; LANES]; BLOCKS];
+
+/// What checks the fields of a model, with its memory.
+pub(super) struct Checker<'a> {
+    matrix: &'a StiffnessMatrix,
+    factor: &'a Factor,
+    samples: &'a [SamplingPoint],
+    /// One more row than unknowns: the zeros of what is held.
+    displacements: Vec<Row>,
+    forces: Vec<Row>,
+}
+
+impl<'a> Checker<'a> {
+    pub(super) fn new(
+        matrix: &'a StiffnessMatrix,
+        factor: &'a Factor,
+        samples: &'a [SamplingPoint],
+    ) -> Checker<'a> {
+        let row = [[0.0; LANES]; BLOCKS];
+        Checker {
+            matrix,
+            factor,
+            samples,
+            displacements: vec![row; matrix.unknowns() + 1],
+            forces: vec![row; matrix.unknowns()],
         }
     }
-    factor.extend_to_interior(&mut displacements[..unknowns])?;
-    let u = &displacements[..unknowns];
-    let (_, residual) = matrix.residual(u, &forces);
-    let mut balance = [[0.0; BATCH]; 2];
-    for direction in 0..2 {
-        for (u, reaction) in u.iter().zip(&matrix.reaction[direction]) {
-            for w in 0..BATCH {
-                balance[direction][w] += reaction * u[w];
+
+    /// Fills in and checks the fields of up to [`BATCH`] poses, given by displacements and loads of the nodes at the surface; below
+    /// it no pose has a load.
+    ///
+    /// Implements: FEM-008, FEM-013.
+    pub(super) fn check(
+        &mut self,
+        poses: &[(AtSurface, AtSurface)],
+    ) -> Result<Vec<FieldCheck>, FemError> {
+        let (matrix, unknowns) = (self.matrix, self.matrix.unknowns());
+        self.forces.as_flattened_mut().as_flattened_mut().fill(0.0);
+        for (w, (u, force)) in poses.iter().enumerate() {
+            let (block, lane) = (w / LANES, w % LANES);
+            let components = u.as_flattened().iter().zip(force.as_flattened());
+            for (place, (u, force)) in matrix.surface.iter().zip(components) {
+                if let Some(unknown) = *place {
+                    self.displacements[unknown][block][lane] = *u;
+                    self.forces[unknown][block][lane] = *force;
+                }
             }
         }
-        for unknown in matrix.surface.iter().skip(direction).step_by(2).flatten() {
-            for w in 0..BATCH {
-                balance[direction][w] += forces[*unknown][w];
+        let (u, _) = self.displacements.split_at_mut(unknowns);
+        self.factor.extend_to_interior(u)?;
+        let balance = [0, 1].map(|direction| {
+            let mut balance = [[0.0; LANES]; BLOCKS];
+            let mut add = |scale: f64, row: &Row| {
+                for (sum, value) in (balance.as_flattened_mut().iter_mut()).zip(row.as_flattened())
+                {
+                    *sum += scale * value;
+                }
+            };
+            let held = u.iter().zip(&matrix.reaction[direction]);
+            for (u, &reaction) in held.filter(|(_, reaction)| **reaction != 0.0) {
+                add(reaction, u);
             }
-        }
+            for unknown in matrix.surface.iter().skip(direction).step_by(2).flatten() {
+                add(1.0, &self.forces[*unknown]);
+            }
+            balance
+        });
+        let residual = matrix.residual(u, &mut self.forces);
+        let min_det = self.min_det();
+        let check = |w: usize| {
+            let of = |row: &Row| row[w / LANES][w % LANES];
+            FieldCheck {
+                residual: of(&residual),
+                imbalance: of(&balance[0]).abs().max(of(&balance[1]).abs()),
+                min_det: of(&min_det),
+            }
+        };
+        Ok((0..poses.len()).map(check).collect())
     }
-    let mut min_det = [f64::INFINITY; BATCH];
-    for sample in samples.iter().filter(|sample| !sample.singular) {
-        let [[xx, xy], [yx, yy]] = sample.gradient(&displacements);
-        for w in 0..BATCH {
-            let det =
-                determinant([[xx[w], xy[w]], [yx[w], yy[w]]]) * sample.circle(&displacements, w);
-            min_det[w] = if det < min_det[w] { det } else { min_det[w] };
-        }
+
+    /// The smallest det(I + ∇u) of each field, away from sharp corners.
+    fn min_det(&self) -> Row {
+        let mut smallest = [[f64::INFINITY; LANES]; BLOCKS];
+        Arch::new().dispatch(|| {
+            for sample in self.samples.iter().filter(|sample| !sample.singular) {
+                for (block, smallest) in smallest.iter_mut().enumerate() {
+                    let u = |row: usize| &self.displacements[row][block];
+                    let [[xx, xy], [yx, yy]] = sample.gradient(u);
+                    let circle = sample.circle(u);
+                    for lane in 0..LANES {
+                        let gradient = [[xx[lane], xy[lane]], [yx[lane], yy[lane]]];
+                        let det = determinant(gradient) * circle[lane];
+                        smallest[lane] = if det < smallest[lane] {
+                            det
+                        } else {
+                            smallest[lane]
+                        };
+                    }
+                }
+            }
+        });
+        smallest
     }
-    let check = |w: usize| FieldCheck {
-        residual: residual[w],
-        imbalance: balance[0][w].abs().max(balance[1][w].abs()),
-        min_det: min_det[w],
-    };
-    Ok((0..poses.len()).map(check).collect())
 }

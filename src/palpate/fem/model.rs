@@ -4,7 +4,7 @@ use super::assembly::StiffnessMatrix;
 use super::cholesky::{Factor, check_residual};
 use super::contact::{Contact, ContactState, Surface};
 use super::element::SAMPLES;
-use super::field::{BATCH, Field, FieldCheck, SamplingPoint, check, samples};
+use super::field::{BATCH, Checker, Field, FieldCheck, SamplingPoint, samples};
 use super::finite::{Equilibrium, FiniteModel, Friction, law_of};
 use super::mesh::Mesh;
 use super::size::SizeField;
@@ -87,7 +87,7 @@ impl Model {
         let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
         let factor = Factor::new(&matrix)?;
         let compliance = factor.surface_compliance(&matrix)?;
-        let surface = Surface::new(&mesh, &compliance, phantom.probe(), contact);
+        let surface = Surface::new(&mesh, compliance, phantom.probe(), contact);
         let size = SizeField::new(phantom, mesh_size);
         let samples = samples(&mesh, &matrix, &size, phantom.geometry());
         let finite = match phantom.strain() {
@@ -232,7 +232,11 @@ impl Model {
         let row = |node, k| self.matrix.unknown(node, k).unwrap_or(u.len());
         let displacements =
             (0..self.mesh.nodes.len()).map(|node| [0, 1].map(|k| rows[row(node, k)][0]));
-        let gradient = |sample: &SamplingPoint| sample.gradient(&rows).map(|row| row.map(|[g]| g));
+        let gradient = |sample: &SamplingPoint| {
+            sample
+                .gradient(|row| &rows[row])
+                .map(|row| row.map(|[g]| g))
+        };
         let elements = self.samples.chunks(SAMPLES.len());
         let gradients = elements.map(|samples| samples.iter().map(gradient).collect());
         Ok(Field {
@@ -257,8 +261,10 @@ impl Model {
             .iter()
             .filter_map(|s| Some((s.contact()?, s.pose)));
         let poses = small.map(|(state, pose)| self.surface.at_nodes(state, pose));
-        for poses in poses.collect::<Vec<_>>().chunks(BATCH) {
-            checks.extend(check(&self.matrix, &self.factor, &self.samples, poses)?);
+        let poses: Vec<_> = poses.collect();
+        let mut checker = Checker::new(&self.matrix, &self.factor, &self.samples);
+        for poses in poses.chunks(BATCH) {
+            checks.extend(checker.check(poses)?);
         }
         Ok(checks)
     }
@@ -322,10 +328,7 @@ impl Model {
                 .map(|&pose| self.solve(pose))
                 .collect::<Result<_, _>>()?,
         };
-        let checks = self.checks(&path)?;
-        for check in &checks {
-            check_residual(check.residual)?;
-        }
+        let checks = self.residuals(&path)?;
         Ok((path, checks))
     }
 
@@ -361,6 +364,17 @@ impl Model {
         laterals: &[f64],
         solved: &dyn Fn(usize) -> bool,
     ) -> Result<ForceMap, FemError> {
+        let (right, solutions) = self.columns(depths, laterals, solved)?;
+        self.map_of(&solutions, [depths, &right], laterals)
+    }
+
+    /// The lateral positions that are solved for a map, and the solutions at all depths of each in turn.
+    fn columns(
+        &self,
+        depths: &[f64],
+        laterals: &[f64],
+        solved: &dyn Fn(usize) -> bool,
+    ) -> Result<(Vec<f64>, Vec<PoseSolution>), FemError> {
         self.check_poses(depths, laterals)?;
         let right = self.solved_laterals(laterals);
         let mut solutions = Vec::with_capacity(right.len() * depths.len());
@@ -370,7 +384,47 @@ impl Model {
                 return Err(FemError::Stopped);
             }
         }
-        self.map_of(&solutions, [depths, &right], laterals)
+        Ok((right, solutions))
+    }
+
+    /// The forces of [`Model::map`] alone; of the fields only those at the deepest poses are checked.
+    ///
+    /// # Errors
+    /// As [`Model::map`].
+    ///
+    /// Implements: FEM-026.
+    pub(super) fn table(
+        &self,
+        depths: &[f64],
+        laterals: &[f64],
+        solved: &dyn Fn(usize),
+    ) -> Result<ForceTable, FemError> {
+        let goes_on = |poses| {
+            solved(poses);
+            true
+        };
+        let (right, solutions) = self.columns(depths, laterals, &goes_on)?;
+        let deepest = solutions.chunks(depths.len()).filter_map(<[_]>::last);
+        self.residuals(&deepest.cloned().collect::<Vec<_>>())?;
+        let mut table = force_table(&solutions, [depths, &right])?;
+        if self.is_mirrored(&right) {
+            table = table.mirrored()?;
+        }
+        Ok(table.at_columns(&table.columns_at(laterals)?)?)
+    }
+
+    /// Whether a map over these lateral positions is half of one.
+    fn is_mirrored(&self, right: &[f64]) -> bool {
+        self.mesh.symmetric && right[0] == 0.0
+    }
+
+    /// [`Model::checks`], with an error where a residual is too large.
+    fn residuals(&self, solutions: &[PoseSolution]) -> Result<Vec<FieldCheck>, FemError> {
+        let checks = self.checks(solutions)?;
+        for check in &checks {
+            check_residual(check.residual)?;
+        }
+        Ok(checks)
     }
 
     /// The force map of one depth over `laterals` (m, increasing), as [`Model::map`] but for the last digits: each position starts
@@ -423,25 +477,13 @@ impl Model {
         [depths, right]: [&[f64]; 2],
         laterals: &[f64],
     ) -> Result<ForceMap, FemError> {
-        let checks = self.checks(solutions)?;
-        for check in &checks {
-            check_residual(check.residual)?;
-        }
-        let matrix = |entry: &dyn Fn(usize) -> f64| {
-            Matrix::from_fn(depths.len(), right.len(), |row, column| {
-                entry(column * depths.len() + row)
-            })
-        };
-        let forces = Force {
-            lateral: matrix(&|at| solutions[at].force.lateral),
-            normal: matrix(&|at| solutions[at].force.normal),
-        };
-        let table = ForceTable::new(depths.to_vec(), right.to_vec(), forces)?;
-        let min_det = matrix(&|at| checks[at].min_det);
+        let checks = self.residuals(solutions)?;
+        let table = force_table(solutions, [depths, right])?;
+        let min_det = by_columns(&checks, depths.len(), |check| check.min_det);
         let certificate = self.certificate(solutions, &checks, min_det, [depths, right])?;
         let source = Source::FiniteElements { certificate };
         let mut map = ForceMap::new(source, Some(self.phantom.clone()), table)?;
-        if self.mesh.symmetric && right[0] == 0.0 {
+        if self.is_mirrored(right) {
             map = map.mirrored()?;
         }
         Ok(map.at_laterals(laterals)?)
@@ -485,6 +527,24 @@ impl Model {
             discretization: None,
         })
     }
+}
+
+/// A value of each pose, as a row for each depth; the poses come column by column.
+fn by_columns<T>(poses: &[T], depths: usize, value: impl Fn(&T) -> f64) -> Matrix {
+    Matrix::from_fn(depths, poses.len() / depths, |row, column| {
+        value(&poses[column * depths + row])
+    })
+}
+
+fn force_table(
+    solutions: &[PoseSolution],
+    [depths, laterals]: [&[f64]; 2],
+) -> Result<ForceTable, Refusal> {
+    let forces = Force {
+        lateral: by_columns(solutions, depths.len(), |solution| solution.force.lateral),
+        normal: by_columns(solutions, depths.len(), |solution| solution.force.normal),
+    };
+    ForceTable::new(depths.to_vec(), laterals.to_vec(), forces)
 }
 
 /// The largest of values that are at least 0.

@@ -354,13 +354,13 @@ impl ForceTable {
     }
 
     /// The column of each of `laterals` (m).
-    pub(super) fn columns_at(&self, laterals: &[f64]) -> Result<Vec<usize>, Refusal> {
+    pub(crate) fn columns_at(&self, laterals: &[f64]) -> Result<Vec<usize>, Refusal> {
         let column = |&lateral| place_of("lateral position", &self.laterals, lateral);
         laterals.iter().map(column).collect()
     }
 
     /// This table with some of its columns, from left to right.
-    pub(super) fn at_columns(&self, columns: &[usize]) -> Result<ForceTable, Refusal> {
+    pub(crate) fn at_columns(&self, columns: &[usize]) -> Result<ForceTable, Refusal> {
         let laterals: Vec<f64> = columns
             .iter()
             .map(|&column| self.laterals[column])

@@ -26,13 +26,23 @@ impl ContactState {
         }
     }
 
-    /// Where the state goes if it keeps changing as it did since `earlier`, `ahead` times as far.
+    /// Where the state goes if it keeps changing as it did since `earlier`, `ahead` times as far; all points between the ends of the
+    /// contact are in contact.
     pub fn extrapolated(&self, earlier: &ContactState, ahead: f64) -> ContactState {
         let on = |now: f64, then: f64| now + ahead * (now - then);
         let mut state = self.clone();
         let then = earlier.displacements.as_flattened();
         for (u, &then) in state.displacements.as_flattened_mut().iter_mut().zip(then) {
             *u = on(*u, then);
+        }
+        let ends = |state: &ContactState| Some([*state.active.first()?, *state.active.last()?]);
+        if let Some([first, last]) = ends(self) {
+            // A contact begins in its middle.
+            let [then_first, then_last] = ends(earlier).unwrap_or([first.midpoint(last); 2]);
+            let most = (self.pressures.len() - 1) as f64;
+            let [first, last] = [(first, then_first), (last, then_last)]
+                .map(|(now, then)| on(now as f64, then as f64).clamp(0.0, most) as usize);
+            state.active = (first..=last).collect();
         }
         for &point in &state.active {
             state.pressures[point] = on(state.pressures[point], earlier.pressures[point]).max(0.0);

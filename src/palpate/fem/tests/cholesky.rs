@@ -96,12 +96,12 @@ fn fields_are_filled_in_from_the_surface() {
     }
     let (u, _) = factor.solve(&matrix, &force).unwrap();
     // Two fields at once, the second of three times the first's size; whatever stood below the surface is replaced.
-    let mut fields: Vec<[f64; 2]> = u.iter().map(|&u| [u, 3.0 * u]).collect();
-    fields[..first].fill([7.0, f64::NAN]);
+    let mut fields: Vec<[[f64; 1]; 2]> = u.iter().map(|&u| [[u], [3.0 * u]]).collect();
+    fields[..first].fill([[7.0], [f64::NAN]]);
     factor.extend_to_interior(&mut fields).unwrap();
     let largest = u.iter().fold(0.0, |a: f64, u| a.max(u.abs()));
     for (u, found) in u.iter().zip(&fields) {
-        for (factor, found) in [1.0, 3.0].into_iter().zip(found) {
+        for (factor, found) in [1.0, 3.0].into_iter().zip(found.as_flattened()) {
             // As in the solve above.
             assert_near(factor * u, *found, 1e-8 * largest);
         }

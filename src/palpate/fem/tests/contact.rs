@@ -1,4 +1,4 @@
-use crate::fem::field::check;
+use crate::fem::field::Checker;
 use crate::fem::{Contact, ContactState, FemError, MESH_SIZE, Model, Pose, PoseSolution};
 use crate::force::Force;
 use palpate_asserts::assert_near;
@@ -160,8 +160,8 @@ fn a_force_that_nothing_answers_is_an_imbalance_in_either_direction() {
         (0..2).for_each(|k| forces[middle][k] += extra[k]);
         (displacements.clone(), forces)
     });
-    let checks = check(&model.matrix, &model.factor, &model.samples, &poses);
-    for (check, extra) in checks.unwrap().iter().zip(extra) {
+    let mut checker = Checker::new(&model.matrix, &model.factor, &model.samples);
+    for (check, extra) in checker.check(&poses).unwrap().iter().zip(extra) {
         let expected = extra[0].abs().max(extra[1].abs());
         assert_near(check.imbalance, expected, 1e-9);
     }

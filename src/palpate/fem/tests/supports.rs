@@ -33,15 +33,15 @@ fn a_shift_of_everything_costs_nothing() {
         let n = matrix.unknowns();
         for direction in 0..2 {
             // Free displacements of 1 and held ones of 1, whose forces on the free ones are the reactions' rows.
-            let mut shift = vec![[0.0]; n];
+            let mut shift = vec![[[0.0]]; n];
             for unknown in (0..mesh.nodes.len()).filter_map(|k| matrix.unknown(k, direction)) {
-                shift[unknown] = [1.0];
+                shift[unknown] = [[1.0]];
             }
-            let force: Vec<[f64; 1]> = (matrix.reaction[direction].iter())
-                .map(|&reaction| [-reaction])
+            let mut rest: Vec<[[f64; 1]; 1]> = (matrix.reaction[direction].iter())
+                .map(|&reaction| [[-reaction]])
                 .collect();
-            let (rest, _) = matrix.residual(&shift, &force);
-            let left = rest.iter().fold(0.0, |a: f64, [f]| a.max(f.abs()));
+            matrix.residual(&shift, &mut rest);
+            let left = rest.iter().fold(0.0, |a: f64, [[f]]| a.max(f.abs()));
             let diagonal = (0..n).map(|k| matrix.upper.val_of_col(k).last().copied().unwrap());
             // Rows of some thirty entries of at most the largest diagonal.
             let largest = diagonal.fold(0.0, f64::max);
