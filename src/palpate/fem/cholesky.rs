@@ -196,10 +196,11 @@ impl Factor {
         u: &mut [[[f64; L]; B]],
     ) -> Result<(), FemError> {
         let (n, fields) = (u.len(), B * L);
+        let first = n - self.surface.nrows();
+        u[..first].fill([[0.0; L]; B]);
         let u = u.as_flattened_mut().as_flattened_mut();
         let mut u = MatMut::from_row_major_slice_mut(u, n, fields);
-        let (mut interior, mut surface) = u.rb_mut().split_at_row_mut(n - self.surface.nrows());
-        interior.fill(0.0);
+        let mut surface = u.rb_mut().split_at_row_mut(first).1;
         surface.copy_from(self.surface.transpose() * surface.rb());
         let factor = self.factor();
         let mut memory = scratch(
