@@ -49,6 +49,8 @@ pub(super) struct Fit {
     pub parameters: Vec<f64>,
     /// Their covariance.
     pub covariance: DMatrix<f64>,
+    /// What the curvature of the model adds to them in the mean over the noise.
+    bias: DVector<f64>,
     /// What the model expects.
     pub expected: Vec<f64>,
     /// Data less model.
@@ -130,7 +132,8 @@ pub(super) fn fit(model: &Model<'_>, data: &[f64], start: &[f64]) -> Option<Fit>
     let (at, left, is_ended) = least_squares(model, data, start)?;
     let squares = left.norm_squared();
     let derivatives = jacobian(model, &at, data.len());
-    let inverse = derivatives.tr_mul(&derivatives).cholesky()?.inverse();
+    let normal = derivatives.tr_mul(&derivatives).cholesky()?;
+    let inverse = normal.inverse();
     let degrees = data.len() as f64 - at.len() as f64;
     let gradient = derivatives.tr_mul(&left);
     let away = gradient.dot(&(&inverse * &gradient)) * degrees / squares;
@@ -138,16 +141,45 @@ pub(super) fn fit(model: &Model<'_>, data: &[f64], start: &[f64]) -> Option<Fit>
     (is_ended || is_near).then_some(())?;
     let residuals: Vec<f64> = left.iter().copied().collect();
     let correlated = correlated(&residuals);
-    let covariance = inverse * (correlated * squares / degrees);
-    let is_finite = covariance.iter().all(|value| value.is_finite());
-    is_finite.then(|| Fit {
-        expected: model(&at),
+    let (variance, expected) = (correlated * squares / degrees, model(&at));
+    let unit = DMatrix::identity(at.len(), at.len());
+    let directions = normal.l().tr_solve_lower_triangular(&unit)? * libm::sqrt(variance);
+    let curved = curvature(model, &at, &expected, &directions);
+    let bias = -&inverse * derivatives.tr_mul(&curved);
+    let covariance = inverse * variance;
+    let mut numbers = covariance.iter().chain(&bias);
+    numbers.all(|value| value.is_finite()).then(|| Fit {
+        expected,
+        bias,
         parameters: at,
         covariance,
         residuals,
         degrees: f64::max(degrees / correlated, 1.0),
         squares,
     })
+}
+
+/// How far the model is in the mean from the model at the mean of parameters that are spread along independent `directions` of one standard
+/// deviation each: half its second differences.
+///
+/// Implements: CAL-036.
+fn curvature(
+    model: &Model<'_>,
+    at: &[f64],
+    expected: &[f64],
+    directions: &DMatrix<f64>,
+) -> DVector<f64> {
+    let mut curved = DVector::zeros(expected.len());
+    for direction in directions.column_iter() {
+        for sign in [1.0, -1.0] {
+            let pairs = at.iter().zip(&direction);
+            let moved: Vec<f64> = pairs.map(|(at, by)| at + sign * by).collect();
+            for ((curved, moved), here) in curved.iter_mut().zip(model(&moved)).zip(expected) {
+                *curved += 0.5 * (moved - here);
+            }
+        }
+    }
+    curved
 }
 
 /// How many samples say as much as one independent one: 1 + 2 Σ ρ over the lags before the first at which residuals are not correlated.
@@ -166,15 +198,14 @@ fn correlated(residuals: &[f64]) -> f64 {
 }
 
 impl Fit {
-    /// A quantity that follows from the parameters, with its interval.
+    /// A quantity that follows from the parameters, less its bias, with its interval.
+    ///
+    /// Implements: CAL-036.
     pub fn interval(&self, of: impl Fn(&[f64]) -> f64) -> Result<Interval, Refusal> {
         let gradient = jacobian(&|at| vec![of(at)], &self.parameters, 1);
         let variance = (&gradient * &self.covariance * gradient.transpose())[(0, 0)];
-        Interval::of(
-            of(&self.parameters),
-            libm::sqrt(variance.max(0.0)),
-            self.degrees,
-        )
+        let estimate = of(&self.parameters) - (&gradient * &self.bias)[(0, 0)];
+        Interval::of(estimate, libm::sqrt(variance.max(0.0)), self.degrees)
     }
 
     /// The correlation of two parameters.

@@ -123,7 +123,20 @@ fn contact_and_modulus_of_a_gel_are_found() {
     assert!(missed.iter().all(|missed| *missed <= 4), "{missed:?}");
 }
 
-// Verifies: CAL-030, CAL-010, CAL-011. 2,000 curves at each noise, whose forces come from a mesh of a quarter of the size.
+// Verifies: CAL-036. The root of a mean is too small by its variance over 8 times its cube.
+#[test]
+fn the_bias_of_a_root_is_taken_from_it() {
+    let data: Vec<f64> = (0..10).map(|k| [3.0, 5.0][k % 2]).collect();
+    let found = fit(&|at| vec![at[0] * at[0]; 10], &data, &[1.0]).unwrap();
+    let root = found.interval(|at| at[0]).unwrap();
+    // One of ten degrees of freedom is that of the root. The last step of the fit moves it by less than 1e-8.
+    let variance_of_mean = 10.0 / 9.0 / 10.0;
+    let unbiased = 2.0 + variance_of_mean / (8.0 * 8.0);
+    assert!((root.estimate - unbiased).abs() < 1e-7, "{root:?}");
+    assert!((0.5 * (root.ends[0] + root.ends[1]) - unbiased).abs() < 1e-7);
+}
+
+// Verifies: CAL-030, CAL-036, CAL-010, CAL-011. 2,000 curves at each noise, whose forces come from a mesh of a quarter of the size.
 #[test]
 #[ignore = "slow: run it with --release"]
 fn intervals_hold_what_they_state_in_95_of_100_curves() {
