@@ -12,6 +12,7 @@ struct Folder(PathBuf);
 impl Folder {
     fn new(name: &str) -> Folder {
         let folder = std::env::temp_dir().join(format!("palpate-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
         fs::create_dir(&folder).unwrap();
         Folder(folder)
     }
@@ -122,64 +123,67 @@ impl Store for Watched<'_> {
 
 const NEW: &str = "what is new";
 
-// A program that is killed leaves what is there at a call.
 // Verifies: CLI-005, CLI-235.
 #[test]
 fn a_file_is_as_it_was_until_it_is_whole_whatever_fails() {
-    let faults = [
+    let last = NEW.len() - 1;
+    for fault in [
         Fault::None,
         Fault::Write(0),
-        Fault::Write(NEW.len() - 1),
+        Fault::Write(last),
         Fault::Sync,
         Fault::Place,
-    ];
-    for (fault, is_there, is_new) in faults.into_iter().flat_map(|fault| {
-        [(false, false), (false, true), (true, false), (true, true)].map(|(a, b)| (fault, a, b))
-    }) {
-        let folder = Folder::new("whole");
-        let (path, old) = (folder.at("out"), is_there.then(|| "old".to_string()));
-        if let Some(old) = &old {
-            fs::write(&path, old).unwrap();
-            fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
+    ] {
+        for place in [rename as Place, link] {
+            assert_written(fault, None, place, fault == Fault::None);
         }
-        let calls = RefCell::new(Vec::new());
-        let look = |file: &File, call| {
-            calls.borrow_mut().push(call);
-            assert_eq!(read(&path), old, "{fault:?}");
-            let mode = file.metadata().unwrap().permissions().mode();
-            assert!(!is_there || mode & 0o777 == 0o600, "others may read it");
-        };
-        let store = |file| Watched {
-            file,
-            fault,
-            look: &look,
-        };
-        let place: Place = if is_new { link } else { rename };
-        let placed = |from: &Path, to: &Path| {
-            look(&File::open(from).unwrap(), "place");
-            assert_eq!(read(from).unwrap(), NEW);
-            match fault {
-                Fault::Place => Err(failure()),
-                _ => place(from, to),
-            }
-        };
-        let told = replace(&path, NEW.as_bytes(), store, placed);
-        let expected = match (fault, is_there && is_new) {
-            (Fault::None, false) => Ok(()),
-            (Fault::None, true) => Err(ErrorKind::Other),
-            _ => Err(ErrorKind::StorageFull),
-        };
-        assert_eq!(told.map_err(|error| error.kind()), expected, "{fault:?}");
-        let left = match expected {
-            Ok(()) => Some(NEW.to_string()),
-            Err(_) => old,
-        };
-        assert_eq!(read(&path), left, "{fault:?}");
-        let names: &[&str] = if left.is_some() { &["out"] } else { &[] };
-        assert_eq!(folder.names(), names, "{fault:?}");
-        if fault == Fault::None {
-            assert_eq!(calls.into_inner()[3..], ["write", "sync", "place"]);
+        let old = Some("old".to_string());
+        assert_written(fault, old.clone(), rename, fault == Fault::None);
+        assert_written(fault, old, link, false);
+    }
+}
+
+/// Asserts that the file is written where that `succeeds`, else stays; and is as it was before each call, where a program may be killed.
+fn assert_written(fault: Fault, old: Option<String>, place: Place, succeeds: bool) {
+    let folder = Folder::new("whole");
+    let path = folder.at("out");
+    if let Some(old) = &old {
+        fs::write(&path, old).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
+    }
+    let calls = RefCell::new(Vec::new());
+    let look = |file: &File, call| {
+        calls.borrow_mut().push(call);
+        assert_eq!(read(&path), old, "{fault:?}");
+        let mode = file.metadata().unwrap().permissions().mode();
+        let is_private = old.is_none() || mode & 0o777 == 0o600;
+        assert!(is_private, "others may read it: {mode:o}");
+    };
+    let look = &look;
+    let placed = |from: &Path, to: &Path| {
+        look(&File::open(from).unwrap(), "place");
+        assert_eq!(read(from).unwrap(), NEW);
+        match fault {
+            Fault::Place => Err(failure()),
+            _ => place(from, to),
         }
+    };
+    let told = replace(
+        &path,
+        NEW.as_bytes(),
+        |file| Watched { file, fault, look },
+        placed,
+    );
+    assert_eq!(told.is_ok(), succeeds, "{fault:?}");
+    let left = if succeeds { Some(NEW.to_string()) } else { old };
+    assert_eq!(read(&path), left, "{fault:?}");
+    let names: &[&str] = if left.is_some() { &["out"] } else { &[] };
+    assert_eq!(folder.names(), names, "{fault:?}");
+    if let (Err(error), true) = (told, fault != Fault::None) {
+        assert_eq!(error.kind(), ErrorKind::StorageFull, "{fault:?}");
+    }
+    if fault == Fault::None {
+        assert_eq!(calls.into_inner()[3..], ["write", "sync", "place"]);
     }
 }
 
