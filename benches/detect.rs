@@ -231,7 +231,7 @@ fn beside_nuisances(
         .concat();
     let (mut white_template, mut record) = (white(template), white(template));
     let nuisances = Nuisances::new(&mut signals, 2 * SAMPLES)?;
-    assert_eq!(nuisances.rank(), 6);
+    assert_eq!(nuisances.rank().get(), 6);
     let detector = SubspaceDetector::new(nuisances, &mut white_template)?;
     let filter = MatchedFilter::new(template, noise_sd)?;
     let of_known = rate(RECORDS as f64, || {

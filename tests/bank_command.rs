@@ -192,6 +192,27 @@ fn what_was_kept_of_another_bank_is_refused_and_stays() {
     assert_has(&found, "another 'palpate bank' is writing this file");
 }
 
+// Verifies: CLI-235.
+#[test]
+fn what_comes_to_the_place_of_a_bank_meanwhile_stays() {
+    let place = Place::new("bank-meanwhile");
+    let phantom = Phantom::builtin("6.6").unwrap().to_toml();
+    let line = SMALL.replace("--phantom 6.6", "--phantom 6.6.toml") + " --out bank.json";
+    let told = place.refused_meanwhile(&line, ["6.6.toml", &phantom], || {
+        place.write("bank.json", "mine")
+    });
+    let there = "palpate: write bank.json: it is there by now; choose another name\n";
+    assert_eq!((&*told, &*place.read("bank.json")), (there, "mine"));
+    // No map is lost.
+    fs::remove_file(place.at("6.6.toml")).unwrap();
+    place.write("6.6.toml", phantom);
+    fs::remove_file(place.at("bank.json")).unwrap();
+    let output = place.run(&line);
+    let note = "palpate: note: bank.json.part: 5 of 5 maps already computed\n";
+    assert_eq!(text(&output.stderr), note);
+    assert_eq!(place.read("bank.json"), expected().to_json());
+}
+
 // Verifies: CLI-155, BNK-020, BNK-021.
 #[test]
 fn what_makes_no_bank_is_refused_in_one_line() {

@@ -83,3 +83,21 @@ fn a_record_is_the_same_alone_and_among_others_from_a_phantom_and_from_its_map()
         );
     }
 }
+
+// Verifies: CLI-235.
+#[test]
+fn what_comes_to_the_place_of_a_record_meanwhile_stays() {
+    let place = Place::new("simulate-meanwhile");
+    let map =
+        place.succeed("solve --phantom none --depths-mm 0,2 --laterals-mm=-4,4 --format json");
+    let line = "simulate --map map.json --depths-mm 1 --from-mm -3 --to-mm 3 --out new";
+    let told = place.refused_meanwhile(line, ["map.json", &map], || {
+        std::fs::create_dir(place.at("new")).unwrap();
+        place.write("new/record-0001.csv", "mine");
+    });
+    let there = "palpate: write new/record-0001.csv: it is there by now; choose another name\n";
+    assert_eq!(
+        (&*told, &*place.read("new/record-0001.csv")),
+        (there, "mine")
+    );
+}

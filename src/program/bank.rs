@@ -10,12 +10,12 @@ use serde::{Deserialize, Serialize};
 use super::CliError;
 use super::error::refuse;
 use super::numbers::{List, contact, length, lengths, moduli, positions};
-use super::output::{Envelope, write};
+use super::output::{Envelope, write_new};
 use super::progress::{resumed_bar, tell_large_mesh, tell_time};
 use super::solve::{TheoryArguments, phantom, tell_large_strain};
 use palpate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
 use palpate::decimal::{kpa, mm};
-use palpate::fem::{Contact, arithmetic};
+use palpate::fem::Contact;
 use palpate::file::from_json;
 use palpate::force_map::ForceMap;
 use palpate::journal::Journal;
@@ -120,7 +120,7 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
         arguments.laterals.len() * arguments.probe_depths.len(),
     ];
     tell_time(&phantom, plan.mesh_size, work).map_err(&failed)?;
-    let (part, finished, bar) = open_part(&plan, arguments, &phantom, &solves)?;
+    let (part, finished, bar) = open_part(&plan, arguments, &solves)?;
     let mut maps = compute(&plan, phantom.name(), &solves, &part, finished, &bar)?;
     bar.finish_and_clear();
     let det = |map: &ForceMap| map.certificate().map_or(1.0, |of| of.smallest_det.det);
@@ -129,27 +129,9 @@ pub fn bank(arguments: &BankArguments) -> Result<(), CliError> {
         tell_large_strain(map, &name(phantom.name(), map.phantom()))
     });
     let reference = maps.remove(0);
-    write(out, &Bank::new(reference, maps)?.to_json())?;
+    write_new(out, &Bank::new(reference, maps)?.to_json())?;
     part.remove()?;
     strain
-}
-
-/// How the first line of a FILE.part begins.
-const BEGINNING: &str = "{\"schema\":\"palpate-bank-part\"";
-
-/// All that the maps of a bank depend on.
-#[derive(Debug, Serialize)]
-struct Request<'a> {
-    arithmetic: &'static str,
-    phantom: &'a Phantom,
-    offsets_m: &'a [f64],
-    depths_m: &'a [f64],
-    diameters_m: &'a [f64],
-    youngs_moduli_pa: &'a [f64],
-    probe_depths_m: &'a [f64],
-    laterals_m: &'a [f64],
-    mesh_size_m: f64,
-    contact: Contact,
 }
 
 /// One computation: 0 for the reference, then one for each solve.
@@ -169,27 +151,14 @@ type Taken = Vec<Option<Vec<ForceMap>>>;
 fn open_part(
     plan: &BankPlan,
     arguments: &BankArguments,
-    phantom: &Phantom,
     solves: &[BankSolve],
 ) -> Result<(Journal, Taken, ProgressBar), CliError> {
-    let request = Request {
-        arithmetic: arithmetic(),
-        phantom,
-        offsets_m: &plan.positions,
-        depths_m: &plan.depths,
-        diameters_m: &plan.diameters,
-        youngs_moduli_pa: &plan.moduli,
-        probe_depths_m: &plan.probe_depths,
-        laterals_m: &arguments.laterals,
-        mesh_size_m: plan.mesh_size,
-        contact: plan.contact,
-    };
-    let request = Envelope::new("palpate-bank-part", 1, request);
+    let request = Envelope::job("palpate-bank-part", plan);
     let mut name = arguments.out.as_os_str().to_owned();
     name.push(".part");
     let path = PathBuf::from(name);
     let mut finished = vec![None; 1 + solves.len()];
-    let part = Journal::open(path.clone(), &request, BEGINNING, "palpate bank", |text| {
+    let part = Journal::open(path.clone(), &request, "palpate bank", |text| {
         let Finished { number, maps } = from_json::<Finished<Vec<ForceMap>>>(text)?;
         let solve = number.checked_sub(1).and_then(|solve| solves.get(solve));
         match finished.get_mut(number) {

@@ -142,9 +142,9 @@ fn open_journal(arguments: &ExperimentArguments) -> Result<(Experiment, Journal)
         inclusions: names.collect(),
     };
     let mut experiment = Experiment::new(setup.clone());
-    let (path, beginning) = (arguments.journal.clone(), Experiment::BEGINNING);
+    let path = arguments.journal.clone();
     let take = |line: &str| experiment.take(line);
-    let journal = Journal::open(path, &setup, beginning, "palpate experiment", take)?;
+    let journal = Journal::open(path, &setup, "palpate experiment", take)?;
     Ok((experiment, journal))
 }
 

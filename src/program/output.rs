@@ -2,10 +2,8 @@
 
 use std::borrow::Cow;
 use std::fmt::Display;
-use std::fs::File;
-use std::hash::{BuildHasher, Hasher, RandomState};
-use std::io::{ErrorKind, IsTerminal, Write};
-use std::path::{Path, PathBuf};
+use std::io::{IsTerminal, Write};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anstream::{AutoStream, ColorChoice};
@@ -16,6 +14,8 @@ use serde_json::Value;
 
 use super::CliError;
 use super::platform::is_closed_pipe;
+use palpate::fem::arithmetic;
+use palpate::file;
 use palpate::refusal::one_line;
 
 /// The format of an answer.
@@ -106,6 +106,22 @@ impl<A> Envelope<A> {
     }
 }
 
+/// All that the parts of a long job depend on.
+#[derive(Debug, Serialize)]
+pub struct Job<P> {
+    arithmetic: &'static str,
+    #[serde(flatten)]
+    plan: P,
+}
+
+impl<P> Envelope<Job<P>> {
+    /// The first line of a job's journal.
+    pub fn job(schema: &'static str, plan: P) -> Envelope<Job<P>> {
+        let arithmetic = arithmetic();
+        Envelope::new(schema, 1, Job { arithmetic, plan })
+    }
+}
+
 /// Prints text; a reader that closes the pipe (`| head`) is no error.
 ///
 /// Implements: CLI-003, CLI-007.
@@ -175,98 +191,26 @@ pub(super) fn warn(text: &str) {
     anstream::eprintln!("palpate: {marked}warning{marked:#}: {}", one_line(text));
 }
 
-/// Writes a file atomically: if the program is stopped, the file is either new and whole or as it was.
+/// Writes a file whole, or leaves it as it was.
 ///
 /// Implements: CLI-005, CLI-007.
 pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
-    replace(path, text.as_bytes()).map_err(CliError::file("write", path))
+    file::write(path, text).map_err(CliError::file("write", path))
 }
 
-/// Implements: CLI-005.
-fn replace(path: &Path, text: &[u8]) -> std::io::Result<()> {
-    let there = match std::fs::metadata(path) {
-        Ok(there) => Some(there),
-        Err(error) if error.kind() == ErrorKind::NotFound => None,
-        Err(error) => return Err(error),
-    };
-    let target = match &there {
-        Some(there) if there.is_file() => path.canonicalize()?,
-        Some(_) => return File::options().write(true).open(path)?.write_all(text),
-        None => end_of_links(path),
-    };
-    let folder = target.parent().filter(|folder| *folder != "");
-    let folder = folder.unwrap_or(Path::new("."));
-    // The error about a missing folder shall not name the temporary file.
-    std::fs::metadata(folder)?;
-    // The keys of a hash map are random.
-    let (name, mut partial) = partial_file(folder, RandomState::new().build_hasher().finish())?;
-    let mut written = partial.write_all(text);
-    if let Some(there) = there {
-        written = written.and_then(|()| partial.set_permissions(there.permissions()));
-    }
-    let moved = written.and_then(|()| std::fs::rename(&name, target));
-    moved.inspect_err(|_| {
-        // The error is reported; a file that stays behind is not worth a second message.
-        let _ = std::fs::remove_file(&name);
-    })
-}
-
-/// A new file in `folder`.
+/// Writes a file whole where none is.
 ///
-/// # Errors
-/// Something of that name is there, whatever it is.
-fn partial_file(folder: &Path, number: u64) -> std::io::Result<(PathBuf, File)> {
-    let name = folder.join(format!(".palpate-{number:016x}.partial"));
-    File::create_new(&name).map(|file| (name, file))
-}
-
-/// The end of a chain of symbolic links to a file that does not exist yet.
-fn end_of_links(path: &Path) -> PathBuf {
-    let next = std::fs::read_link(path).ok();
-    let next = next.map(|next| path.parent().unwrap_or(path).join(next));
-    next.map_or(path.into(), |next| end_of_links(&next))
+/// Implements: CLI-235.
+pub fn write_new(path: &Path, text: &str) -> Result<(), CliError> {
+    file::write_new(path, text).map_err(CliError::file("write", path))
 }
 
 /// Reads a text file.
 pub fn read(path: &Path) -> Result<String, CliError> {
-    palpate::file::text(path).map_err(CliError::file("read", path))
+    file::text(path).map_err(CliError::file("read", path))
 }
 
 /// Makes a folder and those above it.
 pub fn make_folder(path: &Path) -> Result<(), CliError> {
     std::fs::create_dir_all(path).map_err(CliError::file("make folder", path))
-}
-
-#[cfg(test)]
-#[cfg(unix)]
-mod tests {
-    use super::*;
-    use std::os::unix::fs::symlink;
-
-    // Verifies: CLI-005.
-    #[test]
-    fn a_temporary_file_is_new_whatever_was_laid_under_its_name() {
-        let folder = std::env::temp_dir().join(format!("palpate-output-{}", std::process::id()));
-        make_folder(&folder).unwrap();
-        let at = |number: u64| folder.join(format!(".palpate-{number:016x}.partial"));
-        // Another's file, a link to a file, and one to what is not there, which a look for the name does not find.
-        let [victim, nowhere] = ["victim", "nowhere"].map(|name| folder.join(name));
-        std::fs::write(&victim, "untouched").unwrap();
-        std::fs::write(at(0), "untouched").unwrap();
-        symlink(&victim, at(1)).unwrap();
-        symlink(&nowhere, at(2)).unwrap();
-        for number in 0..3 {
-            let refused = partial_file(&folder, number).unwrap_err();
-            assert_eq!(refused.kind(), ErrorKind::AlreadyExists, "{number}");
-        }
-        assert!(!nowhere.exists());
-        let (name, mut file) = partial_file(&folder, 3).unwrap();
-        file.write_all(b"new").unwrap();
-        let read = |path: &Path| std::fs::read_to_string(path).unwrap();
-        assert_eq!(
-            [read(&victim), read(&at(0)), read(&name)],
-            ["untouched", "untouched", "new"]
-        );
-        std::fs::remove_dir_all(folder).unwrap();
-    }
 }

@@ -8,7 +8,7 @@ use super::CliError;
 use super::detect::arguments::NoiseSd;
 use super::error::refuse;
 use super::numbers::{at_least_0, length_or_zero, newtons_or_zero, several, share_below_1};
-use super::output::{make_folder, print, write};
+use super::output::{make_folder, print, write_new};
 use super::path::PathArguments;
 use super::solve::phantom;
 use palpate::fem::{Contact, MESH_SIZE, Model};
@@ -126,7 +126,7 @@ pub fn simulate(arguments: &SimulateArguments) -> Result<(), CliError> {
     };
     make_folder(folder)?;
     for number in 1..=arguments.records {
-        write(
+        write_new(
             &folder.join(format!("record-{number:04}.csv")),
             &record(number)?,
         )?;

@@ -1,8 +1,9 @@
 //! The program `palpate` in a folder of its own, as its users run it.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 
 /// The program.
 pub const PROGRAM: &str = env!("CARGO_BIN_EXE_palpate-under-test");
@@ -49,6 +50,28 @@ impl Place {
 
     pub fn run(&self, line: &str) -> Output {
         self.palpate(line).output().expect("the program starts")
+    }
+
+    /// The program, whose input `pipe` has this text, and what it says; before there is any of it, and after the program looked for its
+    /// outputs, `meanwhile` runs.
+    pub fn refused_meanwhile(
+        &self,
+        line: &str,
+        [pipe, text]: [&str; 2],
+        meanwhile: impl FnOnce(),
+    ) -> String {
+        let made = Command::new("mkfifo").arg(self.at(pipe)).status().unwrap();
+        assert!(made.success());
+        let mut command = self.palpate(line);
+        let child = command.stderr(Stdio::piped()).spawn().unwrap();
+        // Waits until the program opens it.
+        let mut input = fs::File::options().write(true).open(self.at(pipe)).unwrap();
+        meanwhile();
+        input.write_all(text.as_bytes()).unwrap();
+        drop(input);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        String::from_utf8(output.stderr).unwrap()
     }
 
     /// What it prints when all goes well.

@@ -235,7 +235,7 @@ pub unsafe extern "C" fn palpate_theta_nuisances(
             residual: found.residual,
             theta: test.theta(),
             rates: test.rates(test.bayes_threshold(eta)?)?,
-            rank: nuisances.rank(),
+            rank: nuisances.rank().get(),
             degrees: found.degrees as usize,
         })
     };

@@ -310,7 +310,7 @@ impl Bank {
     /// Writes the bank to a file, for palpate detect too. A file that is there is overwritten.
     #[doc = sections!(path;;)]
     fn write(&self, path: PathBuf) -> PyResult<()> {
-        Ok(std::fs::write(path, self.bank.to_json())?)
+        Ok(palpate::file::write(&path, &self.bank.to_json())?)
     }
 
     /// The depth of the probe, mm.

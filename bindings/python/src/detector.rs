@@ -325,7 +325,7 @@ pub fn theta_nuisances<'py>(
             serde_json::json!({
                 "t": test.t, "gamma": test.gamma, "gamma_nominal": detector.gamma_nominal(),
                 "residual": found.residual, "theta": test.theta(), "false_alarm": rates.false_alarm,
-                "miss": rates.miss, "rank": nuisances.rank(), "degrees": found.degrees,
+                "miss": rates.miss, "rank": nuisances.rank().get(), "degrees": found.degrees,
             })
         })
     };

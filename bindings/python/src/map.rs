@@ -119,7 +119,7 @@ impl ForceMap {
             true => self.0.table().to_csv(),
             false => self.0.to_json(),
         };
-        Ok(std::fs::write(path, text)?)
+        Ok(palpate::file::write(&path, &text)?)
     }
 
     /// The depths, mm: shape (m,).

@@ -24,6 +24,17 @@ pub struct Nuisances<'a> {
     samples: usize,
 }
 
+/// How many of some signals are independent; only [`Nuisances`] tells, and nobody can take the number of the signals for it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Rank(usize);
+
+impl Rank {
+    /// As a number.
+    pub fn get(self) -> usize {
+        self.0
+    }
+}
+
 impl<'a> Nuisances<'a> {
     /// The space that `signals` span: vectors of `samples` numbers, one after the other, none or more, that become the basis.
     ///
@@ -62,8 +73,8 @@ impl<'a> Nuisances<'a> {
     }
 
     /// The number of independent signals.
-    pub fn rank(&self) -> usize {
-        self.basis.len() / self.samples
+    pub fn rank(&self) -> Rank {
+        Rank(self.basis.len() / self.samples)
     }
 
     /// Takes from a vector what lies in the space, twice: what rounding leaves of a large part the first time goes the second.
@@ -168,7 +179,7 @@ impl<'a> SubspaceDetector<'a> {
         template: &'a mut [f64],
     ) -> Result<SubspaceDetector<'a>, DetectError> {
         check_samples("template", template, nuisances.samples)?;
-        let samples = (nuisances.samples - 1).saturating_sub(nuisances.rank());
+        let samples = (nuisances.samples - 1).saturating_sub(nuisances.rank().0);
         check_positive("degrees of freedom", samples as f64)?;
         let squares = dot(template, template);
         let gamma_nominal = representable("gamma", libm::sqrt(squares))?;
@@ -217,7 +228,7 @@ impl<'a> SubspaceDetector<'a> {
             t,
             gamma: self.gamma,
             residual: representable("residual", left.map(|left| left * left).sum())?,
-            degrees: (samples - 1 - self.nuisances.rank()) as f64,
+            degrees: (samples - 1 - self.nuisances.rank().0) as f64,
         })
     }
 }

@@ -81,7 +81,7 @@ impl BankDetector {
         // Also whether the prior is one.
         mixture_theta(&vec![0.0; points], prior)?;
         let space = Nuisances::new(&mut nuisances, samples)?;
-        let rank = space.rank();
+        let rank = space.rank().get();
         let degrees = (samples as f64 - 1.0) - rank as f64;
         check_positive("degrees of freedom", degrees)?;
         let all = templates.chunks_exact_mut(samples);

@@ -1,5 +1,7 @@
 //! Which maps a bank needs, and their computation.
 
+use serde::Serialize;
+
 use super::{Bank, Parameter, axis};
 use crate::fem::{Contact, FemError, Model};
 use crate::force_map::{ForceMap, SAME_POSITION, increasing};
@@ -40,23 +42,30 @@ const BESIDE: f64 = 0.3e-3;
 /// ```
 ///
 /// Implements: BNK-020.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BankPlan {
     /// The gel with the one inclusion that all hypotheses are made of.
     phantom: Phantom,
     /// Depths of the probe, m, increasing.
+    #[serde(rename = "probe_depths_m")]
     pub probe_depths: Vec<f64>,
     /// Lateral positions of the probe, m.
+    #[serde(rename = "laterals_m")]
     laterals: Vec<f64>,
     /// x of the inclusion's centre, m.
+    #[serde(rename = "offsets_m")]
     pub positions: Vec<f64>,
     /// Depth of its highest point, m.
+    #[serde(rename = "depths_m")]
     pub depths: Vec<f64>,
     /// Its diameter, m, of a disc.
+    #[serde(rename = "diameters_m")]
     pub diameters: Vec<f64>,
     /// Its Young's modulus, Pa.
+    #[serde(rename = "youngs_moduli_pa")]
     pub moduli: Vec<f64>,
     /// The mesh size, m.
+    #[serde(rename = "mesh_size_m")]
     pub mesh_size: f64,
     /// How the gap to the probe is measured.
     pub contact: Contact,

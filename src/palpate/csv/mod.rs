@@ -462,6 +462,16 @@ mod tests {
         assert_eq!(found.rows, [(2, [0.5, 1.0])]);
     }
 
+    // Verifies: MAP-033.
+    #[test]
+    fn the_lines_of_a_table_are_counted_beyond_16_bits() {
+        let text = "t_s,force_n\n".to_string() + &"1,2\n".repeat(1 << 16);
+        let last = read(&text).unwrap().rows.pop();
+        assert_eq!(last, Some((65_537, [1.0, 2.0])));
+        let refused = read(&(text + "1,none\n")).err().unwrap();
+        assert!(refused.starts_with("line 65538: "), "{refused}");
+    }
+
     // Verifies: MAP-048.
     #[test]
     fn samples_that_lack_a_number_are_left_out_and_counted() {

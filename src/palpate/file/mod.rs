@@ -5,9 +5,11 @@
 //! | `mod.rs` | texts and places; a refusal of serde's in the words of [`Refusal`] |
 //! | `toml.rs` | TOML |
 //! | `json.rs` | JSON, one row of a matrix a line |
+//! | `write.rs` | files that are written |
 
 mod json;
 mod toml;
+mod write;
 
 use std::fs::File;
 use std::io::{self, Error, ErrorKind, Read};
@@ -19,6 +21,8 @@ pub(crate) use json::message;
 pub use json::{check_schema, from_json, to_json};
 pub(crate) use toml::Tree;
 pub use toml::from_toml;
+pub(crate) use write::Store;
+pub use write::{write, write_new};
 
 use crate::refusal::{Refusal, did_you_mean};
 

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{Question, Record, refused};
 use crate::detect::DetectError;
-use crate::detect::nuisance::{DEPENDENT, Nuisances, SubspaceDetector};
+use crate::detect::nuisance::{DEPENDENT, Nuisances, Rank, SubspaceDetector};
 use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION, shallowest};
 use crate::refusal::Refusal;
@@ -182,8 +182,8 @@ impl Design {
         signals.flatten().copied().collect()
     }
 
-    /// What neither the nuisances nor the template explain of the record, and the number of amplitudes that did.
-    pub fn unexplained(&self) -> Result<(Vec<f64>, usize), DetectError> {
+    /// What neither the nuisances nor the template explain of the record, and the number of amplitudes that did, of those that count once.
+    pub fn unexplained(&self) -> Result<(Vec<f64>, Rank), DetectError> {
         let (mut signals, mut left) = (self.signals(true), self.residual.clone());
         let signals = Nuisances::new(&mut signals, left.len())?;
         signals.project(&mut left);
@@ -200,7 +200,7 @@ impl Design {
     pub fn noise_sd(&self) -> Result<Force<f64>, DetectError> {
         let (left, explained) = self.unexplained()?;
         let channels = self.residual.len() / self.samples;
-        let degrees = self.samples as f64 - explained as f64 / channels as f64;
+        let degrees = self.samples as f64 - explained.get() as f64 / channels as f64;
         let sd = self.channels(&left).zip(self.channels(&self.residual));
         let sd = sd.map(|(left, all)| {
             if all.is_empty() {

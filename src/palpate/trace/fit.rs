@@ -115,7 +115,7 @@ impl Fit {
         noise_sd: Force<f64>,
     ) -> Result<Fit, DetectError> {
         let (left, explained) = white.unexplained()?;
-        let degrees = left.len() as f64 - explained as f64;
+        let degrees = left.len() as f64 - explained.get() as f64;
         let chi_square = squares(&left);
         let whiteness = match question.noise.correlation {
             Correlation::None => None,
@@ -199,7 +199,7 @@ impl Noise {
             "a blank sweep without lateral forces",
             "state the noise (--noise-sd-n)",
         );
-        missing.in_file(&*blank.file).when(!blank.has_lateral)?;
+        missing.in_file(&*blank.file).when(!blank.has.lateral)?;
         let told = || {
             let step = 2.0 / (samples - 1) as f64;
             let line = (0..samples).map(|sample| step * sample as f64 - 1.0);

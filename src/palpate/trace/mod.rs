@@ -110,9 +110,15 @@ pub struct Trace {
     file: String,
     abscissa: Abscissa,
     samples: Vec<Sample>,
-    has_lateral: bool,
-    has_depths: bool,
+    has: Has,
     notes: Vec<String>,
+}
+
+/// What is there beside positions and normal forces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Has {
+    lateral: bool,
+    depths: bool,
 }
 
 /// The line of a sample, and its abscissa (s or m), normal and lateral force (N) and depth (m); 0 for what is not there.
@@ -201,8 +207,8 @@ impl Trace {
         let read = || {
             let read =
                 Rows::parse_optional(text, COLUMNS, REQUIRED, EXPECTED_HEADER, layout, true)?;
-            let (mut table, [.., has_lateral, has_depths]) = read;
-            if !has_lateral {
+            let (mut table, [.., lateral, depths]) = read;
+            if !lateral {
                 let note = "there is no lateral force: the normal force alone counts";
                 table.notes.push(note.into());
             }
@@ -213,7 +219,7 @@ impl Trace {
                 check_times(&samples)?;
                 Abscissa::Time
             } else {
-                if !has_depths {
+                if !depths {
                     check_pass(&samples)?;
                 }
                 Abscissa::Position
@@ -222,8 +228,7 @@ impl Trace {
                 file: file.into(),
                 abscissa,
                 samples,
-                has_lateral,
-                has_depths,
+                has: Has { lateral, depths },
                 notes: table.notes,
             })
         };
@@ -263,11 +268,7 @@ impl Trace {
             )),
         };
         placed.map_err(|refusal| refusal.in_file(&*file))?;
-        Ok(Record::of(
-            file,
-            samples,
-            [self.has_lateral, self.has_depths],
-        ))
+        Ok(Record::of(file, samples, self.has))
     }
 }
 
@@ -383,11 +384,9 @@ impl Record {
         let read = || {
             let samples = samples(positions, &[], forces)?;
             check_pass(&samples)?;
-            Ok(Record::of(
-                name.into(),
-                samples,
-                [!forces.lateral.is_empty(), false],
-            ))
+            let (lateral, depths) = (!forces.lateral.is_empty(), false);
+            let has = Has { lateral, depths };
+            Ok(Record::of(name.into(), samples, has))
         };
         read().map_err(|refusal: Refusal| refusal.in_file(name))
     }
@@ -395,8 +394,8 @@ impl Record {
     /// The record of samples over positions that go one way, or that have depths.
     ///
     /// Implements: TRC-010, TRC-081, TRC-085.
-    fn of(file: String, mut samples: Vec<Sample>, [has_lateral, has_depths]: [bool; 2]) -> Record {
-        if !has_depths && backwards(&samples) {
+    fn of(file: String, mut samples: Vec<Sample>, has: Has) -> Record {
+        if !has.depths && backwards(&samples) {
             samples.reverse();
         }
         let column = |of: usize| samples.iter().map(|(_, sample)| sample[of]).collect();
@@ -404,10 +403,10 @@ impl Record {
         Record {
             lines: samples.iter().map(|(line, _)| *line).collect(),
             positions: column(0),
-            depths: there(has_depths, 3),
+            depths: there(has.depths, 3),
             depth_sd: 0.0,
             place: None,
-            forces: Force::new(there(has_lateral, 2), column(1)),
+            forces: Force::new(there(has.lateral, 2), column(1)),
             file,
         }
     }

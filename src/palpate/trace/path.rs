@@ -1,6 +1,6 @@
 //! Records whose samples have depths of their own: the probe may go forward and back, at several depths.
 
-use super::{JITTER, Record, samples};
+use super::{Has, JITTER, Record, samples};
 use crate::force::Force;
 use crate::force_map::SAME_POSITION;
 use crate::refusal::Refusal;
@@ -35,11 +35,9 @@ impl Record {
         let read = || {
             check_samples("depths", depths, positions.len())?;
             let samples = samples(positions, depths, forces)?;
-            Ok(Record::of(
-                name.into(),
-                samples,
-                [!forces.lateral.is_empty(), true],
-            ))
+            let (lateral, depths) = (!forces.lateral.is_empty(), true);
+            let has = Has { lateral, depths };
+            Ok(Record::of(name.into(), samples, has))
         };
         read().map_err(|refusal: Refusal| refusal.in_file(name))
     }

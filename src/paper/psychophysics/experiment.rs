@@ -47,9 +47,6 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// How the first line of every journal of an experiment begins.
-    pub const BEGINNING: &str = "{\"schema\":\"palpate-experiment\"";
-
     /// An experiment without answers.
     pub fn new(setup: Setup) -> Experiment {
         Experiment {

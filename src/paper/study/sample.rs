@@ -6,6 +6,7 @@ use super::design::{Design, Role};
 use super::{NOISE_SD, PROBE_DEPTH, StudyPlan};
 use crate::psychophysics::bridge::{Convention, p_values};
 use crate::psychophysics::{AnswerTable, FEM_PLAYBACK};
+use crate::settings::Settings;
 use palpate::bank::deepest;
 use palpate::decimal::mm;
 use palpate::detect::{MatchedFilter, error_rates, map_threshold, two_afc};
@@ -93,7 +94,8 @@ struct Computed {
     maps: Vec<ForceMap>,
     /// F_1 − F_0 of each map but the reference's.
     signals: Vec<ForceTable>,
-    noise_sd: f64,
+    /// Those of the plan, with the noise of the sample.
+    settings: Settings,
     /// γ of each map but the reference's.
     gamma: Vec<f64>,
     /// The depth of the inclusions of each of them, m.
@@ -155,7 +157,9 @@ impl<'a> Sampler<'a> {
     pub fn sample(&self, index: usize) -> Result<Vec<f64>, Refusal> {
         let computed = self.computed(index)?;
         let value = |quantity: &Quantity| {
-            let value = self.value(quantity, &computed)?;
+            let named = |phantom: &Phantom| phantom.name() == quantity.phantom;
+            let at = self.plan.all_phantoms().position(named).unwrap_or(0);
+            let value = computed.value(&quantity.kind, at, self.needed)?;
             if !value.is_finite() {
                 let key = quantity.to_string();
                 return Err(Refusal::value(key, value, "a finite number"));
@@ -177,7 +181,8 @@ impl<'a> Sampler<'a> {
             of_key.fold(own, |own, (input, &value)| input.change.of(own, value))
         };
         let depth = 1e-3 * of_study(PROBE_DEPTH, 1e3 * self.plan.probe_depth);
-        let noise_sd = of_study(NOISE_SD, self.plan.settings.noise_sd_n);
+        let mut settings = self.plan.settings;
+        settings.noise_sd_n = of_study(NOISE_SD, settings.noise_sd_n);
         let (mut maps, mut depths) = (Vec::new(), Vec::new());
         for own in self.plan.all_phantoms() {
             let solve = || {
@@ -202,7 +207,7 @@ impl<'a> Sampler<'a> {
         let signals = maps[1..].iter().map(|map| map.signal(&maps[0]));
         let signals: Vec<ForceTable> = signals.collect::<Result<_, _>>()?;
         let gamma = signals.iter().map(|signal| {
-            let noise_sd = Force::new(noise_sd, noise_sd);
+            let noise_sd = Force::new(settings.noise_sd_n, settings.noise_sd_n);
             let filter = MatchedFilter::new(signal.row(depth)?, noise_sd)?;
             Ok(filter.gamma())
         });
@@ -210,52 +215,55 @@ impl<'a> Sampler<'a> {
         Ok(Computed {
             maps,
             signals,
-            noise_sd,
+            settings,
             gamma,
             depths,
             p_values,
         })
     }
+}
 
+impl Computed {
+    /// A quantity of the phantom with a number, where both error rates need the γ `needed`. The plan, whose noise is not the sample's, is out
+    /// of reach.
+    ///
     /// Implements: STU-031.
-    fn value(&self, quantity: &Quantity, computed: &Computed) -> Result<f64, Refusal> {
-        let named = |phantom: &Phantom| phantom.name() == quantity.phantom;
-        let at = self.plan.all_phantoms().position(named).unwrap_or(0);
-        let map = &computed.maps[at];
+    fn value(&self, kind: &Kind, at: usize, needed: f64) -> Result<f64, Refusal> {
+        let map = &self.maps[at];
         let laterals = map.table().laterals();
         let place = |lateral: f64| laterals.iter().position(|&x| x == lateral).unwrap_or(0);
         let peak_of = |pick: fn(Force<&[f64]>) -> &[f64]| -> Result<f64, Refusal> {
-            let signal = &computed.signals[at - 1];
+            let signal = &self.signals[at - 1];
             let (force, _) = peak(laterals, pick(signal.row(signal.depths()[0])?));
             Ok(force)
         };
-        let gamma = || computed.gamma[at - 1];
+        let gamma = || self.gamma[at - 1];
         let row = map.table().row(map.table().depths()[0])?;
-        Ok(match &quantity.kind {
+        Ok(match kind {
             Kind::NormalForceN { lateral_m } => row.normal[place(*lateral_m)],
             Kind::LateralForceN { lateral_m } => row.lateral[place(*lateral_m)],
             Kind::PeakNormalN => peak_of(|signal| signal.normal)?,
             Kind::PeakLateralN => peak_of(|signal| signal.lateral)?,
             Kind::Gamma => gamma(),
-            Kind::NeededNoiseSdN => gamma() * computed.noise_sd / self.needed,
+            Kind::NeededNoiseSdN => gamma() * self.settings.noise_sd_n / needed,
             Kind::ErrorRate => {
-                let prior = self.plan.settings.prior_h1;
+                let prior = self.settings.prior_h1;
                 let rates = error_rates(gamma(), map_threshold(prior)?)?;
                 prior * rates.miss + (1.0 - prior) * rates.false_alarm
             }
             Kind::TwoAfc => two_afc(gamma())?,
             Kind::TwoAfcByPeak => {
                 let peak = peak_of(|signal| signal.normal)?.abs();
-                two_afc(peak / computed.noise_sd)?
+                two_afc(peak / self.settings.noise_sd_n)?
             }
             Kind::DetectableDepthM => {
-                let mut pairs: Vec<_> = computed.depths.iter().zip(&computed.gamma).collect();
+                let mut pairs: Vec<_> = self.depths.iter().zip(&self.gamma).collect();
                 pairs.sort_by(|a, b| a.0.total_cmp(b.0));
                 let (depths, gamma): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
-                deepest(&depths, &gamma, self.needed).unwrap_or(0.0)
+                deepest(&depths, &gamma, needed).unwrap_or(0.0)
             }
             Kind::ConventionP { convention } => {
-                let mut named = Convention::all().zip(&computed.p_values);
+                let mut named = Convention::all().zip(&self.p_values);
                 let named = named.find(|(of, _)| of.text() == *convention);
                 named.map_or(f64::NAN, |(_, &p)| p)
             }

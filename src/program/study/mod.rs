@@ -11,14 +11,14 @@ use clap::{Args, Subcommand};
 use rayon::prelude::*;
 
 use super::CliError;
-use super::output::{Format, make_folder, print, write};
+use super::output::{Envelope, Format, make_folder, print, write};
 use super::progress::resumed_bar;
 use file::read_plan;
 use palpate::journal::Journal;
 use palpate::refusal::Refusal;
 use palpate_paper::report::text;
 use palpate_paper::study::{Sampler, StudyResults};
-use records::{BEGINNING, Header, Outcome, Record, Records, Shard};
+use records::{Header, Outcome, Record, Records, Shard};
 
 /// Arguments of `palpate study`.
 #[derive(Debug, Args)]
@@ -80,8 +80,8 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
     let of_shard = (0..sampler.design().samples()).filter(|&sample| shard.has(sample));
     let mut left: BTreeSet<usize> = of_shard.collect();
     let (total, mut failed) = (left.len(), 0);
-    let (header, command) = (Header::new(&plan, shard), "palpate study run");
-    let part = Journal::open(path.clone(), &header, BEGINNING, command, |text| {
+    let header = Envelope::job("palpate-study-samples", Header { shard, plan: &plan });
+    let part = Journal::open(path.clone(), &header, "palpate study run", |text| {
         let record = Record::parse(text, &sampler)?;
         let sample = record.sample;
         if !left.remove(&sample) {

@@ -10,34 +10,19 @@ use serde_json::Value;
 
 use crate::CliError;
 use crate::error::refuse;
-use crate::output::Envelope;
-use palpate::fem::arithmetic;
 use palpate::file::from_json;
 use palpate::journal::take_lines;
 use palpate::refusal::Refusal;
 use palpate_paper::study::{Failure, Sampler, StudyPlan};
 
 /// How the first line of each file begins.
-pub const BEGINNING: &str = "{\"schema\":\"palpate-study-samples\"";
+const BEGINNING: &str = "{\"schema\":\"palpate-study-samples\"";
 
-/// What the first line says: all that the samples depend on.
+/// What the first line says.
 #[derive(Serialize)]
 pub struct Header<'a> {
-    arithmetic: &'static str,
-    shard: Shard,
-    plan: &'a StudyPlan,
-}
-
-impl<'a> Header<'a> {
-    pub fn new(plan: &'a StudyPlan, shard: Shard) -> Envelope<Header<'a>> {
-        let arithmetic = arithmetic();
-        let header = Header {
-            arithmetic,
-            shard,
-            plan,
-        };
-        Envelope::new("palpate-study-samples", 1, header)
-    }
+    pub shard: Shard,
+    pub plan: &'a StudyPlan,
 }
 
 /// The samples that one process computes: those whose number leaves the remainder `number` − 1 when divided by `of`.

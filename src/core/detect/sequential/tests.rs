@@ -63,7 +63,7 @@ impl Rows {
         (
             self.signals.iter().map(of).collect(),
             dot(&z, &z),
-            space.rank(),
+            space.rank().get(),
             3.0 * e,
         )
     }

@@ -36,7 +36,7 @@ pub fn theta(
         t: test.t,
         gamma: test.gamma,
         gamma_nominal: detector.gamma_nominal(),
-        rank: nuisances.rank(),
+        rank: nuisances.rank().get(),
         residual: found.residual,
         degrees: found.degrees as usize, // whole, and below the number of samples
         theta: test.theta(),
