@@ -124,6 +124,12 @@ fn least_squares(
     Some((at, left, false))
 }
 
+/// The least sum of squares that a model leaves, from the parameters `start`; infinite where the method finds none.
+pub(super) fn least(model: &Model<'_>, data: &[f64], start: &[f64]) -> f64 {
+    let found = least_squares(model, data, start);
+    found.map_or(f64::INFINITY, |(_, left, _)| left.norm_squared())
+}
+
 /// Fits `model` to `data` by least squares, from the parameters `start`, each of the order of 1; none where no parameters fit better than
 /// others.
 ///
@@ -206,6 +212,16 @@ impl Fit {
         let variance = (&gradient * &self.covariance * gradient.transpose())[(0, 0)];
         let estimate = of(&self.parameters) - (&gradient * &self.bias)[(0, 0)];
         Interval::of(estimate, libm::sqrt(variance.max(0.0)), self.degrees)
+    }
+
+    /// How far a sum of squares is from the least one, over how far it is where the interval of one parameter ends: the root of the ratio.
+    ///
+    /// # Errors
+    /// As [`Interval::of`].
+    pub fn over_end(&self, squares: f64) -> Result<f64, Refusal> {
+        let point = student_point(0.025, self.degrees)?;
+        let more = (squares / self.squares - 1.0).max(0.0);
+        Ok(libm::sqrt(more * self.degrees) / point)
     }
 
     /// The correlation of two parameters.

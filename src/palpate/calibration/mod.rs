@@ -33,7 +33,7 @@ use crate::refusal::Refusal;
 use crate::stats::noncentral::{Tail, chi_square_point};
 use crate::text::extremes;
 use elastic::stiffened;
-use fit::{Fit, criterion, fit};
+use fit::{Fit, criterion, fit, least};
 
 /// What is known before a curve is fitted.
 #[derive(Debug, Clone, Copy)]
@@ -84,6 +84,8 @@ const LEAST_AIR: usize = 10;
 /// Contacts, over the depths of a curve, and exponents that are tried first.
 const CONTACTS: u32 = 100;
 const EXPONENTS: [f64; 3] = [1.0, 1.5, 2.0];
+/// Steps towards an end of the contact's interval; each leaves a tenth or less of the way.
+const PROFILE_STEPS: usize = 4;
 /// Moduli are found where a further step changes each by less than this share, after at most so many steps.
 const SAME_MODULUS: f64 = 0.02;
 const MOST_ROUNDS: usize = 8;
@@ -448,8 +450,39 @@ impl<'a> Calibration<'a> {
     ///
     /// # Errors
     /// Numbers that no interval has.
+    ///
+    /// Implements: CAL-037.
     pub fn contact(&self) -> Result<Option<Interval>, Refusal> {
-        self.interval(|parts| parts.contact)
+        let found = self.interval(|parts| parts.contact)?;
+        let (Some(found), Some(fit), None) = (found, self.judged(), self.known.contact) else {
+            return Ok(found);
+        };
+        let best = 1e-3 * fit.parameters[0];
+        // The root of what a contact beside the best one leaves more, over that at an end.
+        let over_end = |contact: f64| {
+            let known = Known {
+                contact: Some(contact),
+                ..self.known
+            };
+            let model = CurveModel {
+                known,
+                ..self.model()
+            };
+            let forces = |at: &[f64]| model.forces(at);
+            let left = least(&forces, self.curve.forces(), &fit.parameters[1..]);
+            fit.over_end(left)
+        };
+        let ends = [0, 1].map(|end| -> Result<f64, Refusal> {
+            let mut reach = found.ends[end] - found.estimate;
+            for _ in 0..PROFILE_STEPS {
+                // It is about proportional to the distance.
+                reach /= over_end(best + reach)?.clamp(0.25, 4.0);
+            }
+            Ok(best + reach)
+        });
+        let [first, last] = ends;
+        let ends = [first?.min(found.estimate), last?.max(found.estimate)];
+        Ok(Some(Interval { ends, ..found }))
     }
 
     /// The force of the sensor before the curve, N, and how much more it is at its end.

@@ -136,7 +136,7 @@ fn the_bias_of_a_root_is_taken_from_it() {
     assert!((0.5 * (root.ends[0] + root.ends[1]) - unbiased).abs() < 1e-7);
 }
 
-// Verifies: CAL-030, CAL-036, CAL-010, CAL-011. 2,000 curves at each noise, whose forces come from a mesh of a quarter of the size.
+// Verifies: CAL-030, CAL-036, CAL-037, CAL-010, CAL-011. 2,000 curves at each noise, whose forces come from a mesh of a quarter of the size.
 #[test]
 #[ignore = "slow: run it with --release"]
 fn intervals_hold_what_they_state_in_95_of_100_curves() {
@@ -189,11 +189,11 @@ fn intervals_hold_what_they_state_in_95_of_100_curves() {
                 "{noise} N {name}: {covered:.4} covered, bias {mean:.2e} = {bias:.2} standard errors, sd {sd:.2e}"
             );
             assert!(
-                (0.92..=0.97).contains(&covered),
+                (0.93..=0.97).contains(&covered),
                 "{noise} N, {name}: {covered}"
             );
             // The bias of one estimate is small beside its spread.
-            assert!(mean.abs() < 0.3 * sd, "{noise} N, {name}: {mean} {sd}");
+            assert!(mean.abs() < 0.25 * sd, "{noise} N, {name}: {mean} {sd}");
         }
     }
 }
