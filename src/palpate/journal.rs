@@ -66,7 +66,8 @@ pub fn take_lines(
 
 impl Journal {
     /// Opens the journal of `request` at `path`, or creates it, and passes each whole line after the first to `take`. The first line of
-    /// every journal of this kind begins with what stands before the first comma of the request, its schema. A second process that opens the journal is told that `command` writes it.
+    /// every journal of this kind begins as the request does up to its first comma: with its schema. A second process that opens the
+    /// journal is told that `command` writes it.
     ///
     /// # Errors
     /// The file belongs to another request of which a part is finished, or is not such a journal; another process writes it; or `take`

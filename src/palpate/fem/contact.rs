@@ -52,8 +52,8 @@ const STEP_TOLERANCE: f64 = 1e-13;
 const REUSE_BELOW: f64 = 0.2;
 /// Iterations after which the active set changes by its worst point alone, so that it does not cycle.
 const SIMULTANEOUS_CHANGES: usize = 25;
-/// The first iteration takes in the points that are at least this part as deep inside the probe as the deepest. Displacements
-/// foretold from earlier poses put too many points inside, and those that should not be in contact leave it two by two.
+/// Where nothing is in contact yet, the points that are at least this part as deep inside the probe as the deepest come first: those
+/// further out would leave the contact again, two by two.
 const FIRST_TAKEN: f64 = 0.8;
 /// Iterations after which a pose has not converged.
 const MOST_ITERATIONS: usize = 120;
