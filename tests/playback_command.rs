@@ -86,7 +86,7 @@ fn a_noisy_map_that_is_refused_is_played_when_smoothed() {
     );
     here.succeed("play --map smooth.json --seconds 1");
     let refused = here.refused("import-map noisy.csv --smooth-mm 0.5");
-    let holds = refused.starts_with("noisy.csv: 3 lateral positions are within 0.0005 m");
+    let holds = refused.starts_with("noisy.csv: 3 lateral positions are within 0.5 mm");
     assert!(holds, "{refused}");
     let refused = here.refused("import-map noisy.csv --smooth-mm -1");
     assert!(

@@ -6,6 +6,8 @@ Lengths are mm, moduli kPa, forces N; arrays of both forces are lateral first. W
 from os import PathLike
 from typing import Any, Callable, Iterator, Sequence, TypedDict, final, overload
 
+from typing_extensions import NotRequired
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -156,6 +158,196 @@ class _Counts(TypedDict):
     chi2: list[float]
     df: int
 
+class _Imported(TypedDict):
+    # Of depth and lateral position.
+    largest_shift_mm: list[float]
+    # Lateral, normal.
+    residual_n: list[float | None]
+    noise_sd_n: list[float | None] | None
+    degrees_of_freedom: float | None
+
+class _LargestDepth(TypedDict):
+    diameter_mm: float
+    youngs_modulus_kpa: float
+    gamma: list[float]
+    largest_depth_mm: float | None
+    is_beyond_bank: bool
+    # With classes=True.
+    classes: NotRequired[dict[str, list[float]]]
+
+class _SmallestDiameter(TypedDict):
+    depth_mm: float
+    youngs_modulus_kpa: float
+    smallest_diameter_mm: float | None
+
+class _Reach(TypedDict):
+    gamma_needed: float
+    largest_depths: list[_LargestDepth]
+    smallest_diameters: list[_SmallestDiameter]
+
+# Calibration, in SI.
+class _Force(TypedDict):
+    force_n: float
+    depth_m: float
+
+class _Estimate(TypedDict):
+    estimate: float
+    interval: list[float]
+
+class _Measured(_Estimate):
+    unit: str
+
+class _Modulus(_Measured):
+    layer: str
+
+class _EmpiricalLaw(TypedDict):
+    k_n: _Estimate
+    p: _Estimate
+    q_per_mm: _Estimate
+
+class _RelaxationTerm(TypedDict):
+    tau_s: _Estimate
+    # Of a Prony series, of a power law.
+    weight: NotRequired[_Estimate]
+    exponent: NotRequired[_Estimate]
+
+class _Relaxation(TypedDict):
+    form: str | dict[str, int]
+    terms: list[_RelaxationTerm]
+
+class _Held(TypedDict):
+    seconds: float
+    left: float
+
+class _Calibrated(TypedDict):
+    curve: str
+    samples: int
+    cause: str | None
+    highest_force: _Force
+    contact: _Measured | None
+    offset: _Measured | None
+    drift: _Measured | None
+    noise_sd: _Measured | None
+    phantom: Phantom | None
+    # Where the curve cannot be judged.
+    remedy: NotRequired[str]
+    # Where it can: of a phantom, or without one.
+    youngs_modulus: NotRequired[list[_Modulus]]
+    empirical_law: NotRequired[_EmpiricalLaw]
+    contact_law_correlation: NotRequired[float]
+    relaxation: NotRequired[_Relaxation]
+    held: NotRequired[list[_Held]]
+
+# The analysis of answers.
+class _Bounds(TypedDict):
+    lower: float | None
+    upper: float | None
+
+class _Gamma(_Bounds):
+    gamma: float | None
+
+class _Rate(TypedDict):
+    correct: int
+    trials: int
+    rate: float
+    clopper_pearson: _Bounds
+    wilson: _Bounds
+    gamma: _Gamma
+
+class _Clustered(TypedDict):
+    standard_error: float
+    bounds: _Bounds
+    width_ratio: float
+    gamma: _Gamma
+
+class _Dispersion(TypedDict):
+    chi_square: float
+    degrees: int
+    ratio: float
+    p_value: float
+    smallest_expected: float
+    is_rough: bool
+
+class _BetaBinomial(TypedDict):
+    rate: float
+    rate_bounds: _Bounds
+    correlation: float
+    correlation_bounds: _Bounds
+    is_binomial: bool
+    deviance_gain: float
+    p_value: float
+
+class _Inclusion(TypedDict):
+    name: str
+    depth_m: float
+    pooled: _Rate
+    clustered: _Clustered | None
+    dispersion: _Dispersion | None
+    beta_binomial: _BetaBinomial | None
+
+class _Subject(TypedDict):
+    name: str
+    rates: list[_Rate]
+
+class _Parameter(TypedDict):
+    value: float
+    bounds: _Bounds
+    dispersed_bounds: _Bounds
+
+class _Psychometric(TypedDict):
+    midpoint_m: _Parameter
+    spread_m: _Parameter
+    lapse: _Parameter
+    predicted: list[float]
+    deviance: float
+    degrees: int
+    p_value: float | None
+    p_value_dispersed: float | None
+
+class _Condition(TypedDict):
+    name: str
+    inclusions: list[_Inclusion]
+    subjects: list[_Subject]
+    dispersion: float | None
+    dispersion_degrees: int
+    psychometric: _Psychometric | None
+
+class _Difference(TypedDict):
+    mean: float
+    bounds: _Bounds | None
+    p_value: float | None
+
+class _InclusionDifference(_Difference):
+    inclusion: str
+
+class _Comparison(TypedDict):
+    first: str
+    second: str
+    subjects: int
+    overall: _Difference
+    p_value_holm: float | None
+    by_inclusion: list[_InclusionDifference]
+
+class _NoiseLevel(TypedDict):
+    name: str
+    printed_n: float | None
+    noise_n: float
+    pooled_bounds_n: _Bounds | None
+    clustered_bounds_n: _Bounds | None
+    formula: str
+    assumption: str
+
+class _NoiseLevels(TypedDict):
+    levels: list[_NoiseLevel]
+    agreement: str
+
+class _Analysis(TypedDict):
+    confidence: float
+    conditions: list[_Condition]
+    comparisons: list[_Comparison]
+    # Of the paper's table.
+    noise_levels: NotRequired[_NoiseLevels]
+
 class Refused(ValueError): ...
 
 @final
@@ -198,7 +390,16 @@ class Phantom:
         mesh_mm: float = 0.5,
         contact: str = "deformed-normal",
         progress: _Progress = None,
+        certify: bool = False,
     ) -> ForceMap: ...
+    def write_vtu(
+        self,
+        path: _Path,
+        depth_mm: float,
+        lateral_mm: float = 0.0,
+        mesh_mm: float = 0.5,
+        contact: str = "deformed-normal",
+    ) -> None: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __ne__(self, other: object, /) -> bool: ...
 
@@ -397,9 +598,28 @@ def calibrate(
     lateral_mm: float = 0.0,
     contact_mm: float | None = None,
     mesh_mm: float = 0.5,
-) -> dict[str, Any]: ...
+) -> _Calibrated: ...
+def import_map(
+    depths_mm: ArrayLike,
+    laterals_mm: ArrayLike,
+    forces_n: ArrayLike,
+    grid_mm: ArrayLike,
+    smooth_mm: float | None = None,
+    phantom: Phantom | None = None,
+    note: str = "",
+) -> tuple[ForceMap, _Imported]: ...
+def reach(
+    bank: Bank,
+    noise_sd_n: ArrayLike,
+    unknown: str | Sequence[str] = ("offset", "drift", "gain"),
+    max_false_alarm: float = 0.01,
+    max_miss: float = 0.05,
+    positions_mm: ArrayLike | None = None,
+    depths_mm: ArrayLike | None = None,
+    classes: bool = False,
+) -> _Reach: ...
 def count_analysis(correct: ArrayLike, trials: int) -> _Counts: ...
-def analyse_answers(table: Any = None) -> dict[str, Any]: ...
+def analyse_answers(table: Any = None) -> _Analysis: ...
 
 @final
 class ServoTable:

@@ -6,18 +6,13 @@ use std::sync::atomic::AtomicBool;
 
 use super::CliError;
 use super::output::tell;
-use signal_hook::flag::{register, register_conditional_shutdown};
 pub(super) use system::{PROMISE, raise_priority};
 
 /// A flag that Ctrl-C and the system's other requests to end set; a second one ends the program at once, and leaves the force to the
 /// device's watchdog.
 pub(super) fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
     let stop = Arc::new(AtomicBool::new(false));
-    for signal in system::SIGNALS {
-        let hook = register_conditional_shutdown(signal, 130, stop.clone())
-            .and_then(|_| register(signal, stop.clone()));
-        hook.map_err(CliError::refused(format_args!("signal {signal}")))?;
-    }
+    system::set_on_signals(&stop)?;
     Ok(stop)
 }
 
@@ -29,14 +24,22 @@ pub(super) fn is_closed_pipe(error: &Error) -> bool {
 
 #[cfg(unix)]
 mod system {
-    use super::tell;
+    use super::{Arc, AtomicBool, CliError, tell};
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use signal_hook::flag::{register, register_conditional_shutdown};
     use thread_priority::{
         RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy,
         set_thread_priority_and_policy, thread_native_id,
     };
 
-    pub const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, SIGHUP];
+    pub fn set_on_signals(stop: &Arc<AtomicBool>) -> Result<(), CliError> {
+        for signal in [SIGINT, SIGTERM, SIGHUP] {
+            let hook = register_conditional_shutdown(signal, 130, stop.clone())
+                .and_then(|_| register(signal, stop.clone()));
+            hook.map_err(CliError::refused(format_args!("signal {signal}")))?;
+        }
+        Ok(())
+    }
 
     /// What the system promises of the time at which it wakes the servo thread.
     pub const PROMISE: &str = if cfg!(target_os = "linux") {
@@ -69,11 +72,22 @@ mod system {
 
 #[cfg(windows)]
 mod system {
-    use super::tell;
-    use signal_hook::consts::{SIGBREAK, SIGINT, SIGTERM};
+    use std::process::exit;
+    use std::sync::atomic::Ordering::Relaxed;
+
+    use super::{Arc, AtomicBool, CliError, tell};
     use thread_priority::{ThreadPriority, WinAPIThreadPriority, set_current_thread_priority};
 
-    pub const SIGNALS: [i32; 3] = [SIGINT, SIGTERM, SIGBREAK];
+    /// Ctrl-C, Ctrl-Break and a console that is closed, of which Windows tells in a thread of its own.
+    pub fn set_on_signals(stop: &Arc<AtomicBool>) -> Result<(), CliError> {
+        let stop = stop.clone();
+        let hook = move || {
+            if stop.swap(true, Relaxed) {
+                exit(130);
+            }
+        };
+        ctrlc::set_handler(hook).map_err(CliError::refused("Ctrl-C"))
+    }
 
     /// What the system promises of the time at which it wakes the servo thread.
     pub const PROMISE: &str = "Windows runs the loop before others (time-critical priority), without an upper bound of its delay; it was \

@@ -3,11 +3,9 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use numpy::PyUntypedArrayMethods;
 use palpate::bank::{self, BankPlan, BankSearch, Location};
 use palpate::detect::Decision;
 use palpate::fem::FemError;
-use palpate::force::Force;
 use palpate::force_map::{ForceMap as Map, SAME_POSITION};
 use palpate::refusal::Refusal;
 use palpate::robust::{GelChanges, GelUncertainty, Part, RobustQuestion, RobustSweep};
@@ -18,7 +16,7 @@ use rayon::prelude::*;
 
 use crate::classes::{ForceMap, Phantom};
 use crate::convert::{
-    Any, Names, Records, array, floats, give_reasons, html, in_unit, lengths, list, pair, python,
+    Any, Names, array, finite_forces, give_reasons, html, in_unit, lengths, list, pair, python,
     refused, remade, si, tell,
 };
 use crate::map::axes;
@@ -74,7 +72,7 @@ impl Bank {
     }
 
     /// The gels beside that of the bank, computed the first time.
-    fn changes(&self) -> PyResult<Option<&GelChanges>> {
+    pub fn changes(&self) -> PyResult<Option<&GelChanges>> {
         if let Some(known) = self.changes.get() {
             return Ok(known.as_ref());
         }
@@ -104,15 +102,10 @@ fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
     Ok(maps)
 }
 
-/// The record of forces, or of normal forces alone, at positions over a bank.
+/// Positions over a bank, m.
 ///
 /// Implements: PYT-005.
-fn record(
-    bank: &bank::Bank,
-    positions_mm: Any,
-    forces_n: Any,
-    depths_mm: Option<Any>,
-) -> PyResult<Record> {
+pub fn over(bank: &bank::Bank, positions_mm: Any) -> PyResult<Vec<f64>> {
     let positions = list("positions_mm", positions_mm, -3)?;
     let laterals = bank.reference().table().laterals();
     let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
@@ -123,33 +116,21 @@ fn record(
         let beyond = Refusal::value(format!("positions_mm[{at}]"), found, right);
         return Err(refused(beyond));
     }
-    let values = floats("forces_n", forces_n)?;
-    if let Some(at) = values
-        .as_slice()?
-        .iter()
-        .position(|force| !force.is_finite())
-    {
-        let shape = values.shape();
-        let at = match shape.len() {
-            1 => at.to_string(),
-            _ => format!(
-                "{}, {}",
-                at / shape[shape.len() - 1],
-                at % shape[shape.len() - 1]
-            ),
-        };
-        return Err(refused(format!(
-            "forces_n[{at}] is NaN or infinite; leave such samples out"
-        )));
-    }
-    let both;
-    let forces = match values.shape() {
-        [_] => Force::new(&[][..], values.as_slice()?),
-        _ => {
-            both = Records::one("forces_n", forces_n)?;
-            both.force()?
-        }
-    };
+    Ok(positions)
+}
+
+/// The record of forces, or of normal forces alone, at positions over a bank.
+///
+/// Implements: PYT-005.
+fn record(
+    bank: &bank::Bank,
+    positions_mm: Any,
+    forces_n: Any,
+    depths_mm: Option<Any>,
+) -> PyResult<Record> {
+    let positions = over(bank, positions_mm)?;
+    let forces = finite_forces("forces_n", forces_n)?;
+    let forces = forces.as_ref().map(Vec::as_slice);
     let depths = depths_mm.map(|depths| list("depths_mm", depths, -3));
     let record = match depths.transpose()? {
         None => Record::new("record", &positions, forces),

@@ -36,11 +36,12 @@ const STACK: usize = 8 << 20;
 /// Whatever Python hands over.
 pub type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 
-/// The exception for a reason of the crate's, with its words.
+/// The exception for a reason of the crate's, with its words, but for the option of the command line.
 ///
 /// Implements: PYT-005.
 pub fn refused(reason: impl Display) -> PyErr {
-    Refused::new_err(one_line(&reason.to_string()))
+    let reason = one_line(&reason.to_string());
+    Refused::new_err(reason.replace(", or use --trim", ""))
 }
 
 /// `value` times 10^`power`, as if its shortest decimal were read.
@@ -256,6 +257,27 @@ pub fn of_record(number: Option<usize>, error: NumericError) -> PyErr {
     match number {
         None => refused(error),
         Some(number) => refused(format!("record {number}: {error}")),
+    }
+}
+
+/// The samples of a record of the shape (2, n), or normal ones alone, (n,), without a NaN.
+///
+/// Implements: PYT-005.
+pub fn finite_forces(name: &str, values: &Bound<PyAny>) -> PyResult<Force<Vec<f64>>> {
+    let array = floats(name, values)?;
+    let (shape, samples) = (array.shape(), array.as_slice()?);
+    let last = *shape.last().unwrap_or(&1);
+    if let Some(at) = samples.iter().position(|force| !force.is_finite()) {
+        let at = match shape {
+            [_] => at.to_string(),
+            _ => format!("{}, {}", at / last, at % last),
+        };
+        let found = format!("{name}[{at}] is NaN or infinite; leave such samples out");
+        return Err(refused(found));
+    }
+    match shape {
+        [_] => Ok(Force::new(Vec::new(), samples.to_vec())),
+        _ => Ok(Records::one(name, values)?.force()?.map(<[f64]>::to_vec)),
     }
 }
 

@@ -26,6 +26,7 @@ macro_rules! parameter {
     (contact) => { parameter!(contact: "str, optional" = "The contact law, \"deformed-normal\" or \"vertical-gap\".") };
     (progress) => { parameter!(progress: "callable, optional" = "Called with how much is done and how much there is; what it raises stops the call and is raised.") };
     (depth_mm) => { parameter!(depth_mm: "float" = "Depth of the probe, mm.") };
+    (own_lateral_mm) => { parameter!(lateral_mm: "float, optional" = "Lateral position of the probe, mm.") };
     (lateral_mm) => { parameter!(lateral_mm: "float" = "Lateral position of the probe, mm.") };
     (noise_sd_n) => { parameter!(noise_sd_n: "float or (float, float)" = "Standard deviation of a sample, of both channels or (lateral, normal), N.") };
     (f0) => { parameter!(f0: "array_like, shape (2, n)" = "Forces expected without an inclusion, N.") };

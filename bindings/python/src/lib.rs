@@ -8,6 +8,8 @@
 //! | `detector.rs`, `decision.rs` | the detector: records, and what follows from θ |
 //! | `batch.rs` | θ of many records |
 //! | `bank.rs` | banks of inclusions |
+//! | `reach.rs` | how deep and how small an inclusion may be |
+//! | `import_map.rs` | measured forces at any poses |
 //! | `watch.rs` | a sweep against a bank while it is taken |
 //! | `calibration.rs` | force–depth curves |
 //! | `psychophysics.rs` | counts of right answers |
@@ -26,10 +28,12 @@ mod classes;
 mod convert;
 mod decision;
 mod detector;
+mod import_map;
 mod map;
 mod oracle;
 mod phantom;
 mod psychophysics;
+mod reach;
 mod servo;
 mod watch;
 
@@ -62,11 +66,15 @@ mod palpate {
         theta_coloured, theta_nuisances,
     };
     #[pymodule_export]
+    use super::import_map::import_map;
+    #[pymodule_export]
     use super::oracle::ask;
     #[pymodule_export]
     use super::phantom::ProbeForce;
     #[pymodule_export]
     use super::psychophysics::{analyse_answers, count_analysis};
+    #[pymodule_export]
+    use super::reach::reach;
     #[pymodule_export]
     use super::servo::{Limits, Sample, ServoState, ServoTable, step};
     #[pymodule_export]

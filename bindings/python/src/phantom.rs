@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use palpate::fem::certify::certified_map_while;
 use palpate::fem::{Contact, FemError, Model, Pose};
 use palpate::force::Force;
 use palpate::phantom;
@@ -267,16 +268,50 @@ impl Phantom {
         array(py, &[&[2], &shape[..]].concat(), both.collect())
     }
 
+    /// Writes the deformed mesh of a pose, with displacements, stresses and pressure, m and Pa, as a .vtu file for ParaView, PyVista and meshio.
+    /// A file that is there is overwritten.
+    #[doc = sections!(
+        path, depth_mm, own_lateral_mm, mesh_mm, contact;;
+        "As solve; an axisymmetric phantom."
+    )]
+    // Implements: PYT-055.
+    #[pyo3(signature = (path, depth_mm, lateral_mm=0.0, mesh_mm=0.5, contact="deformed-normal"))]
+    fn write_vtu(
+        &self,
+        py: Python<'_>,
+        path: PathBuf,
+        depth_mm: f64,
+        lateral_mm: f64,
+        mesh_mm: f64,
+        contact: &str,
+    ) -> PyResult<()> {
+        let (depth, lateral) = (
+            si("depth_mm", depth_mm, -3)?,
+            si("lateral_mm", lateral_mm, -3)?,
+        );
+        self.0.check_pose(depth, lateral).map_err(refused)?;
+        let (phantom, contact) = (self.0.clone(), contact.to_owned());
+        let text = interruptible(py, move || {
+            let model = model(&phantom, mesh_mm, &contact)?;
+            let solved = model.solve(Pose { depth, lateral });
+            let text = solved.and_then(|solution| model.vtu(&solution));
+            text.map_err(refused)
+        });
+        Ok(std::fs::write(path, text?)?)
+    }
+
     /// The force map over depths and lateral positions, as solve but for the last digits, and faster.
     #[doc = sections!(
         depths_mm: "array_like, shape (m,)" = "Depths of the probe, increasing, mm.",
         laterals_mm: "array_like, shape (n,)" = "Lateral positions, increasing, mm.",
-        mesh_mm, contact, progress;
+        mesh_mm, contact, progress,
+        certify: "bool, optional" = "Whether two coarser meshes are solved too, for the error bands of the certificate's discretization.";
         "ForceMap" = "The forces, N, with their certificate.";
         "As solve; an axis that does not increase."
     )]
-    // Implements: PYT-010.
-    #[pyo3(signature = (depths_mm, laterals_mm, mesh_mm=0.5, contact="deformed-normal", progress=None))]
+    // Implements: PYT-010, PYT-056.
+    #[pyo3(signature = (depths_mm, laterals_mm, mesh_mm=0.5, contact="deformed-normal", progress=None, certify=false))]
+    #[allow(clippy::too_many_arguments, reason = "keywords in Python")]
     fn map(
         &self,
         py: Python<'_>,
@@ -285,12 +320,14 @@ impl Phantom {
         mesh_mm: f64,
         contact: &str,
         progress: Option<Py<PyAny>>,
+        certify: bool,
     ) -> PyResult<ForceMap> {
         let depths = axis("depths_mm", depths_mm)?;
         let laterals = axis("laterals_mm", laterals_mm)?;
         py.detach(|| {
             let model = model(&self.0, mesh_mm, contact)?;
-            let all = depths.len() * model.solved_laterals(&laterals).len();
+            let meshes = if certify { 3 } else { 1 };
+            let all = meshes * depths.len() * model.solved_laterals(&laterals).len();
             // Poses that are solved, and what was raised.
             let state = RefCell::new((0, None));
             let solved = |poses| {
@@ -299,7 +336,10 @@ impl Phantom {
                 *raised = tell(progress.as_ref(), *done, all).err();
                 raised.is_none()
             };
-            let map = model.map_while(&depths, &laterals, &solved);
+            let map = match certify {
+                true => certified_map_while(&model, &depths, &laterals, &solved),
+                false => model.map_while(&depths, &laterals, &solved),
+            };
             map.map(ForceMap).map_err(|error| match error {
                 FemError::Stopped => state.into_inner().1.unwrap_or_else(|| refused(error)),
                 error => refused(error),

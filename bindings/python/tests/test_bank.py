@@ -230,5 +230,7 @@ def test_each_sample_may_have_its_depth():
     for call in (bank.locate, bank.judge):
         with pytest.raises(palpate.Refused):
             call(x, truth.sweep(4, x), noise_sd_n=0.05, depths_mm=[4.0])
+        with pytest.raises(palpate.Refused, match="at a depth of 5.0 mm is outside the maps, .* leave it out$"):
+            call(x, truth.sweep(4, x), noise_sd_n=0.05, depths_mm=0 * x + 5)
     with pytest.raises(palpate.Refused):
         watcher.push(0, 1.5, 0)

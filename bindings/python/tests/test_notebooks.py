@@ -96,8 +96,10 @@ def test_maps_and_answers_go_to_other_packages(bank, located):
 # PYT-046.
 def test_a_type_checker_knows_the_keys_of_answers(bank, located, tmp_path):
     stub = Path(palpate.__file__).with_name("__init__.pyi").read_text()
-    known = {}
+    known = {"Phantom": palpate.Phantom}
     exec(compile("\n".join(["from typing import *", "from numpy.typing import *", "import numpy as np", *typed(stub)]), "stub", "exec"), known)
+    one_subject = tmp_path / "one.csv"
+    one_subject.write_text("subject,condition,trials,6.6\na,mine,10,10\n")
     judged = bank.judge(X, bank.maps[4].sweep(4, X), noise_sd_n=0.1)
     for name, answer in (
         ("_Located", located),
@@ -110,27 +112,54 @@ def test_a_type_checker_knows_the_keys_of_answers(bank, located, tmp_path):
         ("_Nuisances", palpate.theta_nuisances([1, 2, 4], [1, 0, 0], [[0, 1, 0]])),
         ("_BankPosterior", palpate.bank_posterior([1, 2], [[1, 0]], [], [1])),
         ("_Counts", palpate.count_analysis([[29, 26], [27, 21]], 30)),
+        ("_Analysis", palpate.analyse_answers()),
+        ("_Analysis", palpate.analyse_answers(one_subject)),
+        ("_Imported", palpate.import_map(2 + 0 * X, X, X, grid_mm=0.2, smooth_mm=1)[1]),
+        ("_Imported", palpate.import_map(2 + 0 * X, X, X, grid_mm=0.2)[1]),
+        ("_Reach", palpate.reach(bank, 0.1)),
+        ("_Reach", palpate.reach(bank, 0.1, positions_mm=X, classes=True)),
+        *(("_Calibrated", of) for of in calibrations()),
     ):
-        keys = known[name]
-        hints = typing.get_type_hints(keys, known)
-        assert set(hints) >= set(answer) >= keys.__required_keys__, name
-        assert not [(key, value) for key, value in answer.items() if not is_of(value, hints[key])], name
+        assert not list(wrong(answer, known[name], known)), name
     program = tmp_path / "program.py"
-    program.write_text("import palpate\nanswer = palpate.Bank.read('b').locate([0], [0])\nanswer['estimate']['depth_mm'] + 1.0\nanswer['estmate']\npalpate.Phantom('6.6').solve(4).normal_n + palpate.Phantom('6.6').solve([4])[1]\n")
+    program.write_text("import palpate\nanswer = palpate.Bank.read('b').locate([0], [0])\nanswer['estimate']['depth_mm'] + 1.0\nanswer['estmate']\npalpate.Phantom('6.6').solve(4).normal_n + palpate.Phantom('6.6').solve([4])[1]\npalpate.calibrate([0], [0])['contct']\n")
     found = subprocess.run([sys.executable, "-m", "mypy", "--strict", program], capture_output=True, text=True, cwd=tmp_path).stdout
-    assert 'program.py:4: error: TypedDict "_Located" has no key "estmate"' in found and "Found 1 error" in found, found
+    assert 'program.py:4: error: TypedDict "_Located" has no key "estmate"' in found, found
+    assert 'program.py:6: error: TypedDict "_Calibrated" has no key "contct"' in found and "Found 2 errors" in found, found
 
 
-def is_of(value, hint):
-    """Whether a value is of the type that the stub states."""
+def calibrations():
+    """Of a curve that rises, without a phantom, with one and over time; and of one that does not."""
+    depths = np.linspace(0, 4, 161)
+    forces = 0.3 * np.maximum(depths - 1, 0) ** 1.5 + 2e-3 * np.random.default_rng(3).standard_normal(161)
+    yield palpate.calibrate(depths, forces)
+    yield palpate.calibrate(depths, forces, phantom=palpate.Phantom("none"), mesh_mm=2)
+    # Held for 20 s, it relaxes.
+    times = np.arange(361) * 0.1
+    held = np.hstack([depths, np.full(200, 4.0)]), np.hstack([forces, forces[-1] * (0.7 + 0.3 * np.exp(-times[:200] / 4))])
+    yield palpate.calibrate(*held, times)
+    yield palpate.calibrate(depths, np.sin(np.arange(161) ** 2))
+
+
+def wrong(value, hint, known):
+    """Each part of a value that is not of the type that the stub states."""
     parts = typing.get_args(hint)
-    if hint is typing.Any or typing.is_typeddict(hint):
-        return hint is typing.Any or isinstance(value, dict)
-    if isinstance(hint, types.UnionType):
-        return any(is_of(value, part) for part in parts)
-    if typing.get_origin(hint) is list:
-        return isinstance(value, list) and all(is_of(part, parts[0]) for part in value)
-    return isinstance(value, (int, float) if hint is float else typing.get_origin(hint) or hint)
+    if typing.is_typeddict(hint) and isinstance(value, dict):
+        hints = typing.get_type_hints(hint, known)
+        if not set(hints) >= set(value) >= hint.__required_keys__:
+            yield hint, sorted(value)
+        for key in set(hints) & set(value):
+            yield from wrong(value[key], hints[key], known)
+    elif isinstance(hint, types.UnionType):
+        each = [list(wrong(value, part, known)) for part in parts]
+        yield from min(each, key=len)
+    elif typing.get_origin(hint) is list and isinstance(value, list):
+        for part in value:
+            yield from wrong(part, parts[0], known)
+    else:
+        plain = dict if typing.is_typeddict(hint) else (int, float) if hint is float else typing.get_origin(hint) or hint
+        if hint is not typing.Any and not isinstance(value, plain):
+            yield hint, value
 
 
 def typed(stub):
@@ -138,7 +167,7 @@ def typed(stub):
     keep = False
     for line in stub.splitlines():
         if line.startswith("class "):
-            keep = "TypedDict" in line or "(_Place" in line
+            keep = line.startswith("class _")
         elif line and not line[0].isspace():
             keep = False
         if keep:

@@ -1,4 +1,4 @@
-"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-002, PYT-010, PYT-040, PYT-042, PYT-050."""
+"""Phantoms, maps and long calls. Checks PYT-004, PYT-005, PYT-007, PYT-002, PYT-010, PYT-040, PYT-042, PYT-050, PYT-055, PYT-056."""
 
 import _thread
 import json
@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import palpate
@@ -213,6 +214,36 @@ def test_there_is_no_force_in_air_and_a_line_to_the_first_depth(force_map):
             # Single precision.
             assert np.allclose(table.force(depth, lateral), expected, rtol=1e-6, atol=0)
     assert force_map.force(-3, 99) == (0, 0)
+
+
+# PYT-056.
+def test_a_map_is_certified(phantom):
+    told = []
+    plain = phantom.map([2], [0, 3], **COARSE)
+    found = phantom.map([2], [0, 3], certify=True, progress=lambda *numbers: told.append(numbers), **COARSE)
+    assert np.array_equal(found.normal_n, plain.normal_n) and told == [(n, 6) for n in range(1, 7)]
+    bands = found.certificate["discretization"]
+    assert np.shape(bands["normal_force_band_n"]) == np.shape(bands["lateral_force_band_n"]) == (1, 2)
+    assert bands["nodes"][0] == plain.certificate["nodes"] > bands["nodes"][1] > bands["nodes"][2]
+    # The band holds the difference from a mesh four times as fine.
+    fine = phantom.solve(2, [0, 3], mesh_mm=0.5)[1]
+    assert np.all(np.abs(fine - found.normal_n[0]) < bands["normal_force_band_n"][0]) and "discretization" not in plain.certificate
+
+
+# PYT-055.
+def test_the_deformed_mesh_is_written(phantom, tmp_path):
+    path = tmp_path / "pressed.vtu"
+    phantom.write_vtu(path, depth_mm=4, lateral_mm=1, **COARSE)
+    arrays = {of.get("Name"): np.array(of.text.split(), float).reshape(-1, int(of.get("NumberOfComponents", 1))) for of in ElementTree.parse(path).iter("DataArray")}
+    points, moved = arrays["position_m"], arrays["displacement_m"]
+    assert points.shape == moved.shape and len(points) > 100
+    # Nothing is in the probe, a circle of 6.5 mm, and the gel touches it but for a micrometre; the floor stays.
+    distance = np.hypot(*(points[:, :2] - (1e-3, (6.5 - 4) * 1e-3)).T)
+    assert abs(distance.min() - 6.5e-3) < 1e-6 and points[:, 1].min() == -1e-3 * phantom.height_mm
+    assert (abs(distance - 6.5e-3) < 1e-6).sum() > 5 and not moved[:, 2].any()
+    for call in (lambda: phantom.write_vtu(path, 40), lambda: phantom.write_vtu(path, 4, contact="glued")):
+        with pytest.raises(palpate.Refused):
+            call()
 
 
 # PYT-042.

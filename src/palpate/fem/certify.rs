@@ -32,7 +32,25 @@ pub fn certified_map(
     laterals: &[f64],
     solved: &dyn Fn(usize),
 ) -> Result<ForceMap, FemError> {
-    let finest = model.map(depths, laterals, solved)?;
+    certified_map_while(model, depths, laterals, &|poses| {
+        solved(poses);
+        true
+    })
+}
+
+/// [`certified_map`], where `solved` says whether to go on.
+///
+/// # Errors
+/// As [`certified_map`]; [`FemError::Stopped`].
+///
+/// Implements: PYT-010, PYT-056.
+pub fn certified_map_while(
+    model: &Model,
+    depths: &[f64],
+    laterals: &[f64],
+    solved: &dyn Fn(usize) -> bool,
+) -> Result<ForceMap, FemError> {
+    let finest = model.map_while(depths, laterals, solved)?;
     let coarser = |ratio: f64| -> Result<(usize, ForceTable), FemError> {
         let size = ratio * model.mesh_size();
         let coarser = Model::new(model.phantom(), size, model.surface().contact)?;

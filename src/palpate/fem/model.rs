@@ -387,23 +387,19 @@ impl Model {
         Ok((right, solutions))
     }
 
-    /// The forces of [`Model::map`] alone; of the fields only those at the deepest poses are checked.
+    /// The forces of [`Model::map_while`] alone; of the fields only those at the deepest poses are checked.
     ///
     /// # Errors
-    /// As [`Model::map`].
+    /// As [`Model::map_while`].
     ///
     /// Implements: FEM-026.
     pub(super) fn table(
         &self,
         depths: &[f64],
         laterals: &[f64],
-        solved: &dyn Fn(usize),
+        solved: &dyn Fn(usize) -> bool,
     ) -> Result<ForceTable, FemError> {
-        let goes_on = |poses| {
-            solved(poses);
-            true
-        };
-        let (right, solutions) = self.columns(depths, laterals, &goes_on)?;
+        let (right, solutions) = self.columns(depths, laterals, solved)?;
         let deepest = solutions.chunks(depths.len()).filter_map(<[_]>::last);
         self.residuals(&deepest.cloned().collect::<Vec<_>>())?;
         let mut table = force_table(&solutions, [depths, &right])?;

@@ -44,7 +44,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 pub use certificate::{Certificate, Discretization, SmallestDet};
-pub use grid::Gridded;
+pub use grid::{Gridded, gridded};
 pub use interpolation::interpolate;
 pub(crate) use interpolation::{Place, Stencil, shallowest};
 pub use json::{SCHEMA, SCHEMA_VERSION};

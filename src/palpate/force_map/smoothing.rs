@@ -3,6 +3,7 @@
 use nalgebra::DMatrix;
 
 use super::{ForceTable, Matrix, SAME_POSITION};
+use crate::decimal::mm;
 use crate::force::Force;
 use crate::refusal::Refusal;
 
@@ -45,8 +46,11 @@ impl Window {
         let end = laterals
             .partition_point(|x| *x <= middle + reach)
             .max(at + 1);
-        let (count, position) = (end - start, laterals[at]);
-        let found = format!("{count} lateral positions are within {half_width} m of {position} m");
+        let (count, position) = (end - start, mm(laterals[at]));
+        let found = format!(
+            "{count} lateral positions are within {} mm of {position} mm",
+            mm(half_width)
+        );
         let expected =
             format!("choose a half-width with at least {FEWEST}, through which a parabola goes");
         Refusal::state(found, expected).when(count < FEWEST)?;
@@ -211,7 +215,7 @@ mod tests {
         for (half_width, expected) in [
             (
                 0.99e-3,
-                "3 lateral positions are within 0.00099 m of -0.001 m; choose a half-width with at least 4",
+                "3 lateral positions are within 0.99 mm of -1.0 mm; choose a half-width with at least 4",
             ),
             (0.0, "half-width = 0, but must be"),
             (-1.0, "half-width = -1, but must be"),
