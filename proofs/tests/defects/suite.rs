@@ -61,21 +61,35 @@ impl<'a> Suite<'a> {
 
     /// The first test that fails among those of a filter of cargo-nextest, with a defect that is behind the switch.
     pub fn failing(&self, filter: &str, planted: Option<usize>) -> Option<String> {
-        let path = self.target.join("nextest/ledger/junit.xml");
-        let _ = fs::remove_file(&path);
-        let mut command = self.cargo("nextest run --profile ledger --no-tests pass -E");
-        // Reading the switch allocates, once.
-        command.arg(format!("({filter}) - binary(no_alloc)"));
+        let mut command = self.nextest(filter);
         command
             .arg("--binaries-metadata")
             .arg(self.json("binaries"));
         command.arg("--cargo-metadata").arg(self.json("metadata"));
-        let output = run(&mut command, planted);
+        self.first_failing(&mut command, planted)
+    }
+
+    /// The same of one package, whose tests alone are built first.
+    pub fn failing_in(&self, package: &str, filter: &str) -> Option<String> {
+        self.first_failing(self.nextest(filter).args(["-p", package]), None)
+    }
+
+    fn nextest(&self, filter: &str) -> Command {
+        let mut command = self.cargo("nextest run --profile ledger --no-tests pass -E");
+        // Reading the switch allocates, once.
+        command.arg(format!("({filter}) - binary(no_alloc)"));
+        command
+    }
+
+    fn first_failing(&self, command: &mut Command, planted: Option<usize>) -> Option<String> {
+        let path = self.target.join("nextest/ledger/junit.xml");
+        let _ = fs::remove_file(&path);
+        let output = run(command, planted);
         // 100: a test failed.
         match output.status.code() {
             Some(0) => None,
             Some(100) => Some(first_failure(&fs::read_to_string(path).unwrap())),
-            _ => panic!("{filter}: {}", String::from_utf8_lossy(&output.stderr)),
+            _ => panic!("{command:?}: {}", String::from_utf8_lossy(&output.stderr)),
         }
     }
 
