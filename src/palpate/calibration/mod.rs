@@ -84,7 +84,7 @@ const LEAST_AIR: usize = 10;
 /// Contacts, over the depths of a curve, and exponents that are tried first.
 const CONTACTS: u32 = 100;
 const EXPONENTS: [f64; 3] = [1.0, 1.5, 2.0];
-/// Steps towards an end of the contact's interval; each leaves a tenth or less of the way.
+/// Steps towards an end of the contact's interval, from that of a normal law.
 const PROFILE_STEPS: usize = 4;
 /// Moduli are found where a further step changes each by less than this share, after at most so many steps.
 const SAME_MODULUS: f64 = 0.02;
