@@ -85,7 +85,7 @@ const LEAST_AIR: usize = 10;
 const CONTACTS: u32 = 100;
 const EXPONENTS: [f64; 3] = [1.0, 1.5, 2.0];
 /// Steps towards an end of the contact's interval, from that of a normal law.
-const PROFILE_STEPS: usize = 4;
+const PROFILE_STEPS: usize = 8;
 /// Moduli are found where a further step changes each by less than this share, after at most so many steps.
 const SAME_MODULUS: f64 = 0.02;
 const MOST_ROUNDS: usize = 8;

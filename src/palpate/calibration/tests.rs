@@ -136,6 +136,26 @@ fn the_bias_of_a_root_is_taken_from_it() {
     assert!((0.5 * (root.ends[0] + root.ends[1]) - unbiased).abs() < 1e-7);
 }
 
+// Verifies: CAL-037. A contact held at an end of the interval leaves 1 + t²/n times the least sum of squares.
+#[test]
+fn the_interval_of_the_contact_ends_where_the_profile_says() {
+    let curve = Rig::new(&Phantom::builtin("none").unwrap(), 1e-3).curve(1.3, 30e-3, 1);
+    let question = |contact| CalibrationQuestion { gel: None, contact };
+    let found = calibrate(&curve, question(None)).unwrap();
+    let (interval, fit) = (found.contact().unwrap().unwrap(), found.fit.unwrap());
+    assert!(interval.ends[0] < interval.estimate && interval.estimate < interval.ends[1]);
+    for end in interval.ends {
+        let held = calibrate(&curve, question(Some(end))).unwrap();
+        assert_eq!(held.relaxation, found.relaxation);
+        let more = held.fit.unwrap().squares / fit.squares - 1.0;
+        let point = (more * fit.degrees).sqrt();
+        // Student's point of 97.5 % is 1.960 + 2.4/n.
+        let expected = 1.96 + 2.4 / fit.degrees;
+        // The steps end within a hundredth.
+        assert!((point / expected - 1.0).abs() < 0.01, "{point} at {end}");
+    }
+}
+
 // Verifies: CAL-030, CAL-036, CAL-037, CAL-010, CAL-011. 2,000 curves at each noise, whose forces come from a mesh of a quarter of the size.
 #[test]
 #[ignore = "slow: run it with --release"]
