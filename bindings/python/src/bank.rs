@@ -1,5 +1,6 @@
 //! Banks of inclusions, and records searched with them.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
@@ -71,8 +72,22 @@ impl Bank {
         Bank { bank, changes }
     }
 
-    /// The gels beside that of the bank, computed the first time.
-    pub fn changes(&self) -> PyResult<Option<&GelChanges>> {
+    /// The gels beside that of the bank, under the passes of a record.
+    pub fn changes_under(
+        &self,
+        record: &Record,
+        passes: &[&Record],
+    ) -> PyResult<Option<Cow<'_, GelChanges>>> {
+        if record.depths().is_none() {
+            return Ok(self.changes()?.map(Cow::Borrowed));
+        }
+        let usual = GelUncertainty::default();
+        let own = GelChanges::along(self.bank.reference(), passes, &usual);
+        Ok(own.map_err(refused)?.map(Cow::Owned))
+    }
+
+    /// Those under the probe at the depth of the bank, computed the first time.
+    fn changes(&self) -> PyResult<Option<&GelChanges>> {
         if let Some(known) = self.changes.get() {
             return Ok(known.as_ref());
         }
@@ -368,18 +383,11 @@ impl Bank {
             let reference = self.bank.reference();
             let (passes, _) = question.passes(&record, reference);
             let along: Vec<&Record> = passes.iter().collect();
-            let own;
-            let changes = match record.depths() {
-                None => self.changes()?,
-                Some(_) => {
-                    own = GelChanges::along(reference, &along, &GelUncertainty::default());
-                    own.as_ref().map_err(refused)?.as_ref()
-                }
-            };
+            let changes = self.changes_under(&record, &along)?;
             let sweep = |record| RobustSweep {
                 record,
                 depth: self.bank.depth(),
-                changes,
+                changes: changes.as_deref(),
                 is_reference: false,
             };
             let sweeps: Vec<_> = along.into_iter().map(sweep).collect();

@@ -2,7 +2,6 @@
 
 use palpate::bank::{BesideClass, Reach, Reached, smallest_diameters};
 use palpate::refusal::Refusal;
-use palpate::robust::{GelChanges, GelUncertainty};
 use palpate::trace::{Record, Unknown};
 use pyo3::prelude::*;
 use serde_json::{Map, Value, json};
@@ -102,16 +101,8 @@ fn sweep(bank: &Bank, positions_mm: Option<Any>, depths_mm: Option<Any>) -> PyRe
 }
 
 fn beside_classes(bank: &Bank, reach: &Reach) -> PyResult<Vec<Vec<BesideClass>>> {
-    let own;
-    let changes = match reach.sweep.depths() {
-        None => bank.changes()?,
-        Some(_) => {
-            let (reference, usual) = (reach.bank.reference(), GelUncertainty::default());
-            own = GelChanges::along(reference, &[reach.sweep], &usual).map_err(refused)?;
-            own.as_ref()
-        }
-    };
-    reach.beside_classes(changes).map_err(refused)
+    let changes = bank.changes_under(reach.sweep, &[reach.sweep])?;
+    reach.beside_classes(changes.as_deref()).map_err(refused)
 }
 
 fn largest(of: &Reached, classes: Option<&[BesideClass]>) -> Value {

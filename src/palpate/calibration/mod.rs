@@ -18,6 +18,8 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
+use std::sync::OnceLock;
+
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
@@ -103,6 +105,8 @@ pub struct Calibration<'a> {
     pub relaxation: Relaxation,
     known: Known,
     fit: Option<Fit>,
+    /// That of the contact, once it was asked for: it takes some fits.
+    profile: OnceLock<Interval>,
 }
 
 /// What is not fitted.
@@ -221,6 +225,7 @@ pub fn calibrate<'a>(
             relaxation: Relaxation::None,
             known,
             fit: None,
+            profile: OnceLock::new(),
         });
     };
     let contact = question.contact.unwrap_or(1e-3 * start[0]);
@@ -341,6 +346,7 @@ fn best<'a>(curve: &'a Curve, known: Known, elastic: Elastic, start: &[f64]) -> 
         relaxation,
         known,
         fit,
+        profile: OnceLock::new(),
     };
     found.cause = found.why_not();
     found
@@ -450,13 +456,22 @@ impl<'a> Calibration<'a> {
     ///
     /// # Errors
     /// Numbers that no interval has.
-    ///
-    /// Implements: CAL-037.
     pub fn contact(&self) -> Result<Option<Interval>, Refusal> {
         let found = self.interval(|parts| parts.contact)?;
-        let (Some(found), Some(fit), None) = (found, self.judged(), self.known.contact) else {
+        let (Some(normal), Some(fit), None) = (found, self.judged(), self.known.contact) else {
             return Ok(found);
         };
+        if self.profile.get().is_none() {
+            let ends = self.profile_ends(normal, fit)?;
+            self.profile.get_or_init(|| Interval { ends, ..normal });
+        }
+        Ok(self.profile.get().copied())
+    }
+
+    /// The ends of the interval of the contact, m, from that of a normal law.
+    ///
+    /// Implements: CAL-037.
+    fn profile_ends(&self, normal: Interval, fit: &Fit) -> Result<[f64; 2], Refusal> {
         let best = 1e-3 * fit.parameters[0];
         // The root of what a contact beside the best one leaves more, over that at an end.
         let over_end = |contact: f64| {
@@ -473,7 +488,7 @@ impl<'a> Calibration<'a> {
             fit.over_end(left)
         };
         let ends = [0, 1].map(|end| -> Result<f64, Refusal> {
-            let mut reach = found.ends[end] - found.estimate;
+            let mut reach = normal.ends[end] - normal.estimate;
             for _ in 0..PROFILE_STEPS {
                 // It is about proportional to the distance.
                 reach /= over_end(best + reach)?.clamp(0.25, 4.0);
@@ -481,8 +496,7 @@ impl<'a> Calibration<'a> {
             Ok(best + reach)
         });
         let [first, last] = ends;
-        let ends = [first?.min(found.estimate), last?.max(found.estimate)];
-        Ok(Some(Interval { ends, ..found }))
+        Ok([first?.min(normal.estimate), last?.max(normal.estimate)])
     }
 
     /// The force of the sensor before the curve, N, and how much more it is at its end.

@@ -10,11 +10,11 @@ use super::mesh::Mesh;
 use super::size::SizeField;
 use crate::phantom::Geometry;
 
-/// How many fields stand beside each other in memory.
-const LANES: usize = 8;
-/// How many times as many poses are checked at once: the factor is read from memory once for all of them.
-const BLOCKS: usize = 3;
+/// How many poses are checked at once: the factor is read from memory once for all of them.
 pub(super) const BATCH: usize = BLOCKS * LANES;
+/// Their fields stand in blocks of so many lanes, which one or two registers of the processor hold.
+const BLOCKS: usize = 3;
+const LANES: usize = 8;
 
 /// Checks on the displacement field of one pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
