@@ -688,12 +688,17 @@ pub fn calibrated(
     layers: &[usize],
     moduli: &[(String, Interval)],
 ) -> Result<Phantom, Refusal> {
-    let numbers = if layers.is_empty() { &[0][..] } else { layers };
-    let pairs = numbers.iter().zip(moduli);
-    let factor = |(layer, (_, modulus)): (&usize, &(String, Interval))| {
-        modulus.estimate / phantom.layers()[*layer].material.youngs_modulus
+    let factor = |(_, modulus): &(String, Interval)| {
+        modulus.estimate / phantom.layers()[0].material.youngs_modulus
     };
-    stiffened(phantom, layers, &pairs.map(factor).collect::<Vec<_>>())
+    match moduli.first().map(factor) {
+        Some(factor) if layers.is_empty() => stiffened(phantom, layers, &[factor]),
+        _ => phantom.changed(|parts| {
+            for (layer, (_, modulus)) in layers.iter().zip(moduli) {
+                parts.layers[*layer].material.youngs_modulus = modulus.estimate;
+            }
+        }),
+    }
 }
 
 /// The standard deviation of independent noise, from the steps from sample to sample.
