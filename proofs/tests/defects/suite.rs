@@ -32,6 +32,8 @@ impl<'a> Suite<'a> {
         let config = ".config/nextest.toml";
         copy.write(config, (copy.read(config) + PROFILE).as_bytes());
         let target = copy.root.join("target");
+        // `cargo metadata` does not make it.
+        fs::create_dir_all(&target).unwrap();
         Suite { copy, target }
     }
 
