@@ -1,6 +1,7 @@
 """Records: shapes, bits, batches, noise. Checks PYT-003, PYT-005, PYT-020."""
 
 import math
+import os
 import subprocess
 import sys
 from fractions import Fraction
@@ -201,6 +202,6 @@ def test_the_number_of_threads_changes_nothing():
         "+ s['theta'].tobytes() + palpate.simulate_theta(f0, f1, 0.3, True, 3000).tobytes() + b.maps[0].normal_n.tobytes())"
     )
     def run(threads):
-        environment = {"RAYON_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": "1"}
+        environment = os.environ | {"RAYON_NUM_THREADS": threads, "OPENBLAS_NUM_THREADS": "1"}
         return subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, check=True).stdout
     assert run("1") == run("2") == run("5") != b""
