@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `harness.rs` | how a harness runs as a test, a fuzz target and a Kani proof |
 //! | `cases.rs` | generators of valid values |
-//! | `axis.rs`, `table.rs`, `step.rs`, `report.rs`, `decision.rs`, `nuisance.rs`, `c.rs` | the harnesses |
+//! | `axis.rs`, `table.rs`, `step.rs`, `report.rs`, `decision.rs`, `nuisance.rs`, `sequential.rs`, `c.rs` | the harnesses |
 //!
 //! `README.md` lists each with its scope and its assumptions. What needs other profiles is in
 //! `tests/` (all 2³² inputs, planted defects) and `examples/` (no path to a panic).
@@ -24,6 +24,8 @@ mod decision;
 mod nuisance;
 #[cfg(test)]
 mod report;
+#[cfg(test)]
+mod sequential;
 #[cfg(test)]
 mod step;
 #[cfg(test)]

@@ -46,7 +46,7 @@ pub struct Oracle {
 impl Oracle {
     /// Answers one line, without its end, and appends the answer's line to `out`.
     ///
-    /// Implements: ORA-001, ORA-004, ORA-012, ACC-030.
+    /// Implements: ORA-001, ORA-004, ORA-012, ACC-030, ACC-031.
     pub fn answer(&mut self, line: &[u8], out: &mut Vec<u8>) {
         match Request::parse(line) {
             Ok(request) => answer::write(request.id.0, self.perform(&request), out),
