@@ -213,14 +213,19 @@ def thresholds(oracle, draw):
         by_prior.point(ok["eta"], exact, 3 * ulp(exact), p)
     by_cost = Sweep("Bayes threshold")
     args = []
-    for p in priors[:10_000]:
+    for k, p in enumerate(priors[:10_000]):
         c00, c11 = draw.uniform(-1, 1), draw.uniform(-1, 1)
-        c10, c01 = c00 + 10 ** draw.uniform(-2, 3), c11 + 10 ** draw.uniform(-2, 3)
+        false_alarm, size = 10 ** draw.uniform(-2, 3), draw.uniform(-2, 3)
+        # In every second case the costs nearly make up for the priors.
+        miss = false_alarm * (1 - p) / p * 2 ** (size / 3) if k % 2 and p > 1e-300 else 10**size
+        c10, c01 = c00 + false_alarm, c11 + miss
+        if not c01 > c11:
+            c01 = c11 + 1
         args.append({"criterion": "bayes", "prior_h1": p, "c00": c00, "c01": c01, "c10": c10, "c11": c11})
     for a, ok in zip(args, oracle.ask("threshold", args)):
         p = mpf(a["prior_h1"])
-        prior, cost = log((1 - p) / p), log((mpf(a["c10"]) - a["c00"]) / (mpf(a["c01"]) - a["c11"]))
-        by_cost.point(ok["eta"], prior + cost, U * (8 + 8 * abs(prior) + 8 * abs(cost)), a)
+        exact = log((1 - p) * (mpf(a["c10"]) - a["c00"]) / (p * (mpf(a["c01"]) - a["c11"])))
+        by_cost.point(ok["eta"], exact, U * (8 + 3 * abs(exact)), a)
     sweeps = [by_prior, by_cost]
     for name, key, sign in (("miss", "max_miss", 1), ("false_alarm", "max_false_alarm", -1)):
         sweep = Sweep(f"Neyman-Pearson threshold, {name}")

@@ -32,7 +32,8 @@ def main(paths):
         if group.get("schema") != "palpate-vectors":
             continue
         for case in group["cases"]:
-            still, *others = (answer.get(case["id"], {}) for answer in answers)
+            still, *others = (answer[case["id"]] for answer in answers if case["id"] in answer)
+            assert len(others) >= 3, case["id"]
             for key, expected in case.get("ok", {}).items():
                 entry = case.get("tolerance", {}).get(key) or group["tolerance"].get(key, {})
                 row = moved.setdefault((group["op"], key), [0, 0.0, 0.0])

@@ -113,13 +113,23 @@ pub fn bayes_threshold(prior_h1: f64, costs: Costs) -> Result<f64, DetectError> 
     }
     let false_alarm = check_positive("c10 - c00", c10 - c00)?;
     let miss = check_positive("c01 - c11", c01 - c11)?;
-    // Two logarithms: a product or quotient of extreme costs could overflow.
-    let log_cost_ratio = if false_alarm <= 2.0 * miss && miss <= 2.0 * false_alarm {
-        libm::log1p((false_alarm - miss) / miss)
+    let of_priors = map_threshold(prior_h1)?;
+    if false_alarm == miss {
+        return Ok(of_priors);
+    }
+    // One logarithm: of a sum of them little may be left. Exponents apart, for the quotient of extreme costs could overflow.
+    let [(p0, e0), (p1, e1), (of_false_alarm, e2), (of_miss, e3)] =
+        [1.0 - prior_h1, prior_h1, false_alarm, miss].map(libm::frexp);
+    let (over, under, exponent) = (p0 * of_false_alarm, p1 * of_miss, e0 + e2 - e1 - e3);
+    if exponent.abs() > 1000 {
+        return Ok(libm::log(over / under) + f64::from(exponent) * core::f64::consts::LN_2);
+    }
+    let over = libm::scalbn(over, exponent);
+    Ok(if over <= 2.0 * under && under <= 2.0 * over {
+        libm::log1p((over - under) / under)
     } else {
-        libm::log(false_alarm) - libm::log(miss)
-    };
-    Ok(map_threshold(prior_h1)? + log_cost_ratio)
+        libm::log(over / under)
+    })
 }
 
 /// The Neyman–Pearson threshold with the fewest false alarms among those with a miss rate ≤ β,

@@ -277,10 +277,12 @@ fn threshold_of_largest_posterior() {
 // Verifies: DET-022.
 #[test]
 fn threshold_of_least_cost() {
-    let costs = costs(1.0, 500.0, 20.0, 5.0);
-    // The sum of two logarithms of about 3.9 and −3.3: four roundings of 4.
-    let eta = bayes_threshold(0.02, costs).unwrap();
-    assert_near(eta, 0.6317015147083768, 16.0 * f64::EPSILON);
+    // DET-001.
+    let eta = bayes_threshold(0.02, costs(1.0, 500.0, 20.0, 5.0)).unwrap();
+    assert_near(eta, 0.6317015147083768, 5.0 * f64::EPSILON);
+    // ln of 0.99 · 1/(0.01 · 100): the logarithms of priors and costs, ±4.6, nearly cancel.
+    let eta = bayes_threshold(0.01, costs(0.0, 100.0, 1.0, 0.0)).unwrap();
+    assert_near(eta, -0.010050335853501463, 4.02 * f64::EPSILON);
     assert_eq!(bayes_threshold(0.02, ZERO_ONE), map_threshold(0.02));
 }
 
