@@ -56,7 +56,15 @@ fn a_row_is_refused_or_leaves_finite_numbers() {
                 missing += 1;
                 assert!(result.is_ok() && after == (before.0, before.1, before.2, before.3 + 1));
             } else {
-                let (Evidence { along, gamma_squared }, squares, rows, _) = after;
+                let (
+                    Evidence {
+                        along,
+                        gamma_squared,
+                    },
+                    squares,
+                    rows,
+                    _,
+                ) = after;
                 assert!(result.is_ok() && rows == before.2 + 1);
                 assert!((-BOUND..BOUND).contains(&along));
                 assert!((0.0..BOUND).contains(&gamma_squared) && (0.0..BOUND).contains(&squares));

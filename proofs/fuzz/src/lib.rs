@@ -7,6 +7,7 @@
 //! | `map.rs` | force maps, JSON and CSV |
 //! | `trace.rs` | recorded sweeps, whole and line by line |
 //! | `path.rs` | paths of the probe |
+//! | `curve.rs` | force–depth curves, and statements of columns |
 //! | `counts.rs` | counts of right answers, and the journal of an experiment |
 //! | `suite.rs` | vectors |
 //! | `oracle.rs` | one line of the oracle |
@@ -24,6 +25,7 @@ use bolero as _;
 pub mod command_line;
 pub mod config;
 pub mod counts;
+pub mod curve;
 pub mod hid;
 pub mod map;
 mod message;
@@ -69,6 +71,7 @@ pub const TARGETS: &[Target] = &[
     Target::new("trace_csv", OfText(trace::trace_csv)),
     Target::new("live_lines", OfText(trace::live_lines)),
     Target::new("path_csv", OfText(path::path_csv)),
+    Target::new("curve_csv", OfText(curve::curve_csv)),
     Target::new("counts_csv", OfText(counts::counts_csv)),
     Target::new("journal", OfText(counts::journal)),
     Target::new("vectors", OfText(suite::vectors)),

@@ -35,6 +35,7 @@ targets!(
     trace_csv: 5_000,
     live_lines: 5_000,
     path_csv: 5_000,
+    curve_csv: 5_000,
     counts_csv: 2_000,
     journal: 1_000,
     vectors: 5_000,
