@@ -133,7 +133,9 @@ impl<'a> Suite<'a> {
             .current_dir(&self.copy.root)
             .env("CARGO_TARGET_DIR", &self.target)
             .env("CARGO_INCREMENTAL", "0")
-            .env("INSTA_UPDATE", "no");
+            .env("INSTA_UPDATE", "no")
+            // That of the run which this test is in: 1, for its output is shown.
+            .env_remove("NEXTEST_TEST_THREADS");
         command
     }
 
