@@ -214,3 +214,16 @@ pub fn read(path: &Path) -> Result<String, CliError> {
 pub fn make_folder(path: &Path) -> Result<(), CliError> {
     std::fs::create_dir_all(path).map_err(CliError::file("make folder", path))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Format;
+
+    // Verifies: CLI-226.
+    #[test]
+    fn a_field_of_csv_is_quoted_where_it_needs_it() {
+        let answer = serde_json::json!({"a": {"b,c": "d, \"e\""}, "f": ["g", null, 1.5]});
+        let expected = "key,value\n\"a.b,c\",\"d, \"\"e\"\"\"\nf[0],g\nf[1],\nf[2],1.5\n";
+        assert_eq!(Format::Csv.text(&answer, String::new), expected);
+    }
+}

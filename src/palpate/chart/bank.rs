@@ -275,6 +275,9 @@ fn region(cells: &[Rectangle], level: f64) -> Vec<Vec<(f64, f64)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bank::{BankDetector, BankPlan};
+    use crate::detect::nuisance::NoiseLevel;
+    use crate::phantom::Phantom;
 
     // Verifies: CLI-163.
     #[test]
@@ -322,5 +325,48 @@ mod tests {
         for (level, first) in joined {
             assert_eq!(region(&cells, level), [first, third.clone()]);
         }
+    }
+
+    // Verifies: CLI-163.
+    #[test]
+    fn the_gel_is_drawn_from_its_surface_down_and_its_key_has_the_colours_of_the_regions() {
+        let mut plan = BankPlan::new(Phantom::builtin("4.6").unwrap(), 3e-3, &[-1e-3, 1e-3]);
+        let plan = plan.as_mut().unwrap();
+        (plan.positions, plan.depths) = (vec![-1e-3, 1e-3], vec![2.6e-3, 4.6e-3]);
+        plan.mesh_size = 4e-3;
+        let bank = plan.bank().unwrap();
+        // Of four places, each with a sample of its own, the record shows the first.
+        let templates = (0..16).map(|k| if k % 5 == 0 { 9.0 } else { 0.0 });
+        let detector = BankDetector::new(
+            bank.axes(),
+            templates.collect(),
+            &[0.25; 4],
+            Vec::new(),
+            &[],
+            NoiseLevel::Known,
+        );
+        let detector = detector.unwrap();
+        let found = detector.statistic(&mut [9.0, 0.0, 0.0, 0.0]).unwrap();
+        let panel = gel(&bank, &detector.place(&found));
+        assert!(panel.y[0] > 4.6 && panel.y[1] == 0.0, "{:?}", panel.y);
+        let colour = |name: &str| {
+            panel
+                .key
+                .iter()
+                .find(|line| line.name == name)
+                .unwrap()
+                .colour
+        };
+        let colours = [colour("95 %"), colour("its top: 50 %")];
+        assert_eq!(colours, REGIONS.map(|(_, colour)| colour));
+        let area = |of: &Cells| {
+            let across = of.areas.iter().flatten().map(|corner| corner.0);
+            extremes(across).map(|[from, to]| to - from)
+        };
+        let [wide, narrow] = &panel.cells[..] else {
+            panic!()
+        };
+        assert!(area(wide) >= area(narrow));
+        assert_eq!([wide.fill, narrow.fill], colours);
     }
 }

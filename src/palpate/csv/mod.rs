@@ -496,6 +496,38 @@ mod tests {
         assert_eq!(optional, whole);
     }
 
+    // Verifies: MAP-046.
+    #[test]
+    fn no_two_quantities_share_a_column() {
+        const FOUR: [Column; 4] = [
+            &[&[("position_mm", -3)]],
+            &[&[("normal_force_n", 0)]],
+            &[&[("lateral_force_n", 0)]],
+            &[&[("depth_mm", -3)]],
+        ];
+        let stated = |[position, normal, lateral, depth]: [usize; 4]| {
+            let layout = format!(
+                "position={position}[mm],normal={normal}[N],lateral={lateral}[N],depth={depth}[mm]"
+            );
+            let layout = layout.parse().unwrap();
+            let read = Rows::parse_as("a,b,c,d\n1,2,3,4\n", FOUR, "", &layout);
+            read.map_err(|refusal| refusal.to_string())
+        };
+        assert!(stated([4, 2, 1, 3]).is_ok());
+        for one in 0..4 {
+            for other in 0..one {
+                let mut columns = [1, 2, 3, 4];
+                columns[one] = columns[other];
+                let refused = stated(columns).err().unwrap();
+                let twice = format!(
+                    "line 1: column {} for two quantities in the header",
+                    columns[other]
+                );
+                assert!(refused.starts_with(&twice), "{refused}");
+            }
+        }
+    }
+
     // Verifies: MAP-040, MAP-033.
     #[test]
     fn tables_that_are_not_clear_are_refused_in_one_line() {

@@ -146,3 +146,17 @@ impl serde_json::ser::Formatter for RowPerLine {
         writer.write_all(b"]")
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::to_json;
+
+    // Verifies: MAP-020.
+    #[test]
+    fn a_document_ends_its_last_line() {
+        assert_eq!(
+            to_json(&[[1.5, 2.0], [3.0, 4.0]]),
+            "[\n  [1.5,2.0],\n  [3.0,4.0]\n]\n"
+        );
+    }
+}

@@ -84,30 +84,6 @@ fn positions_of_an_encoder_are_taken() {
     }
 }
 
-// Verifies: MAP-046.
-#[test]
-fn no_two_quantities_share_a_column() {
-    let stated = |columns: [usize; 4]| {
-        let [position, normal, lateral, depth] = columns;
-        let layout = format!(
-            "position={position}[mm],normal={normal}[N],lateral={lateral}[N],depth={depth}[mm]"
-        );
-        Trace::from_csv_as("a,b,c,d\n1,2,3,4\n", "t.csv", &layout.parse().unwrap())
-    };
-    assert!(stated([4, 2, 1, 3]).is_ok());
-    for one in 0..4 {
-        for other in 0..one {
-            let mut columns = [1, 2, 3, 4];
-            columns[one] = columns[other];
-            let twice = columns[other];
-            assert_error(
-                stated(columns),
-                &format!("t.csv:1: column {twice} for two quantities in the header[..]"),
-            );
-        }
-    }
-}
-
 // Forces that grow with the depth, each channel at its own rate.
 // Verifies: TRC-060.
 #[test]
