@@ -1,6 +1,7 @@
 //! Sweeps that the classes of the robust detector did not make: other gels, meshes, motions, sensors, and a gel at finite strain. What is
 //! the largest share of false answers? `spec/robust.md` has the results.
 
+mod any_record;
 mod families;
 mod fooled_figures;
 mod fooled_table;

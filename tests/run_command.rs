@@ -1,12 +1,10 @@
 //! `palpate run`, end to end: its files, and the report.
 
 use std::fs;
-use std::path::PathBuf;
 
 use crate::program::{ASYMMETRIC, Place, contents, text};
 use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
-use palpate::trace::Trace;
 use palpate_asserts::assert_has;
 
 // Verifies: CLI-007, CLI-031, CLI-032, CON-006.

@@ -19,6 +19,10 @@ use crate::trace::{Cause, refused};
 
 /// A record that fits a class and hypothesis is farther from its mean with this probability.
 const MISFIT_RATE: f64 = 1e-5;
+/// The largest magnitude of a force, N: fourth powers of such, and their sums, are far from overflow.
+///
+/// Implements: ROB-008.
+const LARGEST: f64 = 1e20;
 /// A record allows a class with a posterior above this.
 const ALLOWED: f64 = 0.01;
 
@@ -101,14 +105,24 @@ impl<'a> RobustDetector<'a> {
 
     /// Judges the forces of one record for each sweep.
     ///
-    /// Implements: ROB-003, ROB-004, ROB-005, ROB-031, ROB-060.
+    /// Implements: ROB-003, ROB-004, ROB-005, ROB-008, ROB-031, ROB-060.
     ///
     /// # Errors
-    /// A record with lateral forces where the sweep has none, or the other way round.
+    /// A record with lateral forces where the sweep has none, or the other way round; a force beyond 10²⁰ N, or that is not finite.
     pub fn judge(&self, records: &[Force<&[f64]>]) -> Result<RobustAnswer, Refusal> {
         for (sweep, record) in self.sweeps.iter().zip(records) {
             let other = Refusal::state("the record has other channels than the sweep", "");
             other.when(sweep.has_lateral == record.lateral.is_empty())?;
+            let mut forces = record.lateral.iter().chain(record.normal);
+            // False for NaN.
+            let is_right = |force: &&f64| force.abs() <= LARGEST;
+            if let Some(force) = forces.find(|force| !is_right(force)) {
+                return Err(Refusal::value(
+                    "force",
+                    force,
+                    "at most 1e20 N in magnitude",
+                ));
+            }
         }
         let mut answer = RobustAnswer {
             decision: None,

@@ -1057,3 +1057,29 @@ fn passes_whose_depth_trembles_are_judged_by_what_the_maps_say_of_it() {
         assert!(most > 1e-3 && off < 0.02 * most, "{off:e} of {most:e}");
     }
 }
+
+// Verifies: ROB-008.
+#[test]
+fn forces_whose_squares_overflow_are_refused() {
+    let bank = bank();
+    let over = positions(81);
+    let forces = bank.maps()[7].table().sweep(bank.depth(), &over).unwrap();
+    let record = Record::new("sweep", &over, Force::new(&forces.lateral, &forces.normal));
+    let record = record.unwrap();
+    let sweep = at_place(&bank, &record, None);
+    let question = RobustQuestion::default();
+    let (detector, _) = question.bank_detector(&bank, None, &[sweep]).unwrap();
+    let judged = |channel: usize, force: f64| {
+        let mut channels = [forces.lateral.clone(), forces.normal.clone()];
+        channels[channel][40] = force;
+        let answer = detector.judge(&[Force::new(&channels[0], &channels[1])]);
+        answer.map_err(|refusal| refusal.to_string())
+    };
+    for channel in [0, 1] {
+        assert!(judged(channel, -1e20).is_ok());
+        for force in [f64::NAN, f64::NEG_INFINITY, 1e300, -1.1e20] {
+            let expected = format!("force = {force}, but must be at most 1e20 N in magnitude");
+            assert_eq!(judged(channel, force).err(), Some(expected));
+        }
+    }
+}
