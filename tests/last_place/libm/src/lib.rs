@@ -37,11 +37,16 @@ fn moved(result: f64, arguments: &[f64]) -> f64 {
         // FNV-1a of the arguments and the result: a function of them, as a maths library is.
         Way::Either(seed) => {
             let numbers = arguments.iter().chain([&result]);
-            let mix = |hash: u64, number: &f64| (hash ^ number.to_bits()).wrapping_mul(0x100_0000_01B3);
+            let mix =
+                |hash: u64, number: &f64| (hash ^ number.to_bits()).wrapping_mul(0x100_0000_01B3);
             numbers.fold(0xCBF2_9CE4_8422_2325 ^ seed, mix).count_ones() % 2 == 0
         }
     };
-    if is_up { result.next_up() } else { result.next_down() }
+    if is_up {
+        result.next_up()
+    } else {
+        result.next_down()
+    }
 }
 
 macro_rules! moved {
