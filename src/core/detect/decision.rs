@@ -113,13 +113,13 @@ pub fn bayes_threshold(prior_h1: f64, costs: Costs) -> Result<f64, DetectError> 
     }
     let false_alarm = check_positive("c10 - c00", c10 - c00)?;
     let miss = check_positive("c01 - c11", c01 - c11)?;
-    let of_priors = map_threshold(prior_h1)?;
     if false_alarm == miss {
-        return Ok(of_priors);
+        return map_threshold(prior_h1);
     }
+    let prior = check_probability("prior_h1", prior_h1)?;
     // One logarithm: of a sum of them little may be left. Exponents apart, for the quotient of extreme costs could overflow.
     let [(p0, e0), (p1, e1), (of_false_alarm, e2), (of_miss, e3)] =
-        [1.0 - prior_h1, prior_h1, false_alarm, miss].map(libm::frexp);
+        [1.0 - prior, prior, false_alarm, miss].map(libm::frexp);
     let (over, under, exponent) = (p0 * of_false_alarm, p1 * of_miss, e0 + e2 - e1 - e3);
     if exponent.abs() > 1000 {
         return Ok(libm::log(over / under) + f64::from(exponent) * core::f64::consts::LN_2);
