@@ -2,7 +2,7 @@
 
 use super::*;
 
-// Verifies: CLI-041, CLI-042, CLI-003, CLI-048, CLI-140.
+// Verifies: CLI-041, CLI-042, CLI-003, CLI-048, CLI-140, ROB-008.
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
     place().refuses("detect", |words| {
@@ -10,6 +10,9 @@ fn bad_arguments_are_refused_in_one_line() {
     });
     place().write("wrong.toml", "height_percent = -1");
     place().write("unknown.toml", "height_mm = 1");
+    let with = place().read("with.csv");
+    let (before, _) = with.trim_end().rsplit_once(',').unwrap();
+    place().write("huge.csv", format!("{before},1e300\n"));
     place().refuses("detect robust", |words| {
         format!("detect {} --depth-mm 3", words.replace("MAPS", MAPS))
     });

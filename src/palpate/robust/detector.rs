@@ -114,14 +114,11 @@ impl<'a> RobustDetector<'a> {
             let other = Refusal::state("the record has other channels than the sweep", "");
             other.when(sweep.has_lateral == record.lateral.is_empty())?;
             let mut forces = record.lateral.iter().chain(record.normal);
-            // False for NaN.
-            let is_right = |force: &&f64| force.abs() <= LARGEST;
-            if let Some(force) = forces.find(|force| !is_right(force)) {
-                return Err(Refusal::value(
-                    "force",
-                    force,
-                    "at most 1e20 N in magnitude",
-                ));
+            // NaN is in no range.
+            let wrong = forces.find(|force| !(-LARGEST..=LARGEST).contains(*force));
+            if let Some(force) = wrong {
+                let right = "at most 1e20 N in magnitude";
+                return Err(Refusal::value("force", format!("{force:?}"), right));
             }
         }
         let mut answer = RobustAnswer {

@@ -1078,7 +1078,7 @@ fn forces_whose_squares_overflow_are_refused() {
     for channel in [0, 1] {
         assert!(judged(channel, -1e20).is_ok());
         for force in [f64::NAN, f64::NEG_INFINITY, 1e300, -1.1e20] {
-            let expected = format!("force = {force}, but must be at most 1e20 N in magnitude");
+            let expected = format!("force = {force:?}, but must be at most 1e20 N in magnitude");
             assert_eq!(judged(channel, force).err(), Some(expected));
         }
     }

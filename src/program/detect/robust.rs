@@ -342,15 +342,18 @@ impl Detector<'_> {
         &self,
         sweeps: &[RobustSweep<'_>],
     ) -> Result<(RobustAnswer, Option<RobustPlace>), Refusal> {
+        let (Detector::Maps(detector) | Detector::Bank(detector, _)) = self;
         let forces: Vec<_> = sweeps.iter().map(|sweep| sweep.record.forces()).collect();
-        match self {
-            Detector::Maps(detector) => Ok((detector.judge(&forces)?, None)),
-            Detector::Bank(detector, hypotheses) => {
-                let answer = detector.judge(&forces)?;
-                let place = hypotheses.place(&answer);
-                Ok((answer, Some(place)))
-            }
-        }
+        let answer = detector.judge(&forces).map_err(|refusal| {
+            let mut files: Vec<_> = sweeps.iter().map(|sweep| sweep.record.file()).collect();
+            files.dedup();
+            refusal.in_file(files.join(", "))
+        })?;
+        let place = match self {
+            Detector::Maps(_) => None,
+            Detector::Bank(_, hypotheses) => Some(hypotheses.place(&answer)),
+        };
+        Ok((answer, place))
     }
 }
 
