@@ -18,25 +18,22 @@ const SHARE: u64 = 10;
 /// Numbers between 0 and 1, one after the other.
 struct Draws {
     generator: Generator,
-    place: [u64; 2],
+    record: u64,
     next: u64,
 }
 
 impl Draws {
     fn new(sweep: u64, record: u64) -> Draws {
-        let generator = Generator::new(47, sweep);
-        let place = [record, 3];
         Draws {
-            generator,
-            place,
+            generator: Generator::new(47, sweep),
+            record,
             next: 0,
         }
     }
 
     fn unit(&mut self) -> f64 {
-        let [record, of] = self.place;
         self.next += 1;
-        uniform(self.generator.words([self.next, record, of, 0])[0])
+        uniform(self.generator.words([self.next, self.record, 3, 0])[0])
     }
 
     fn between(&mut self, low: f64, high: f64) -> f64 {
@@ -49,9 +46,9 @@ impl Draws {
         if self.unit() < 0.5 { -size } else { size }
     }
 
-    /// One normal deviate, nearly: the sum of twelve.
     fn deviate(&mut self) -> f64 {
-        (0..12).map(|_| self.unit()).sum::<f64>() - 6.0
+        self.next += 1;
+        self.generator.normal(self.record, self.next)
     }
 }
 
@@ -161,6 +158,7 @@ fn any_question(u: &mut Draws) -> RobustQuestion<'static> {
     }
 }
 
+/// Between 0 and 1, but for the roundings of a sum of a few thousand shares.
 fn is_share(number: f64) -> bool {
     (-1e-12..=1.0 + 1e-12).contains(&number)
 }

@@ -330,8 +330,8 @@ mod tests {
     // Verifies: CLI-163.
     #[test]
     fn the_gel_is_drawn_from_its_surface_down_and_its_key_has_the_colours_of_the_regions() {
-        let mut plan = BankPlan::new(Phantom::builtin("4.6").unwrap(), 3e-3, &[-1e-3, 1e-3]);
-        let plan = plan.as_mut().unwrap();
+        let phantom = Phantom::builtin("4.6").unwrap();
+        let mut plan = BankPlan::new(phantom, 3e-3, &[-1e-3, 1e-3]).unwrap();
         (plan.positions, plan.depths) = (vec![-1e-3, 1e-3], vec![2.6e-3, 4.6e-3]);
         plan.mesh_size = 4e-3;
         let bank = plan.bank().unwrap();
@@ -350,23 +350,19 @@ mod tests {
         let panel = gel(&bank, &detector.place(&found));
         assert!(panel.y[0] > 4.6 && panel.y[1] == 0.0, "{:?}", panel.y);
         let colour = |name: &str| {
-            panel
-                .key
-                .iter()
-                .find(|line| line.name == name)
-                .unwrap()
-                .colour
+            let mut lines = panel.key.iter();
+            lines.find(|line| line.name == name).unwrap().colour
         };
         let colours = [colour("95 %"), colour("its top: 50 %")];
         assert_eq!(colours, REGIONS.map(|(_, colour)| colour));
-        let area = |of: &Cells| {
+        let width = |of: &Cells| {
             let across = of.areas.iter().flatten().map(|corner| corner.0);
             extremes(across).map(|[from, to]| to - from)
         };
         let [wide, narrow] = &panel.cells[..] else {
             panic!()
         };
-        assert!(area(wide) >= area(narrow));
+        assert!(width(wide) >= width(narrow));
         assert_eq!([wide.fill, narrow.fill], colours);
     }
 }
