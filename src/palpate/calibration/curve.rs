@@ -5,7 +5,6 @@ use std::path::Path;
 use crate::csv::{Column, Layout, Rows};
 use crate::refusal::Refusal;
 use crate::stats::error::check_samples;
-use crate::text::extremes;
 
 /// How far the probe went, from any zero; the force; the time, which may be missing.
 const COLUMNS: [Column; 3] = [
@@ -23,7 +22,7 @@ const EXPECTED_HEADER: &str = "depth_mm,normal_force_n and time_s if there are t
 const LEAST_SAMPLES: usize = 20;
 /// Relaxation is looked for in a curve that has at least so many samples at its depth.
 const LEAST_HELD: usize = 20;
-/// The probe is on its way back when it has left the deepest point by this share of its way.
+/// The probe is on its way back when it has left the deepest point by this share of its way there.
 const WAY_BACK: f64 = 0.05;
 
 /// What a sensor recorded while the probe went into a gel and stayed there, from above its surface.
@@ -107,15 +106,16 @@ impl Curve {
                     return Err(Refusal::state(found, "give times that increase"));
                 }
             }
-            let [least, most] = extremes(depths.iter().copied()).unwrap_or_default();
-            let deep = most - WAY_BACK * (most - least);
+            let most = depths.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let first = depths.first().copied().unwrap_or(most);
+            let deep = most - WAY_BACK * (most - first);
             let last = depths.iter().rposition(|depth| *depth >= deep);
             let kept = last.map_or(0, |last| last + 1);
             let found = format!("{kept} samples on the way into the gel");
             let few = Refusal::state(found, format!("give at least {LEAST_SAMPLES}"));
             few.when(kept < LEAST_SAMPLES)?;
             let still = Refusal::state("the probe does not move", "give a curve into the gel");
-            still.when(most <= depths[0])?;
+            still.when(most <= first)?;
             let mut notes = Vec::new();
             if kept < all {
                 let back = all - kept;

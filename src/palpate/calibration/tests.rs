@@ -402,6 +402,11 @@ fn curves_that_are_none_are_refused() {
             &["samples of the way back are not used: 29".to_string()][..]
         )
     );
+    // However far above its start the probe then goes.
+    let up = (1..=300).map(|k| -3e-3 - 1e-4 * f64::from(k));
+    let further: Vec<f64> = there_and_back.iter().copied().chain(up).collect();
+    let kept_of_further = Curve::new("c", None, &further, &further).unwrap();
+    assert_eq!(kept_of_further.depths(), kept.depths());
     // With what the reader of the file has to say before it.
     let rows = there_and_back.iter().map(|x| format!("{x},{x},0\n"));
     let text = "depth_m,normal_force_n,note\n".to_string() + &rows.collect::<String>();
