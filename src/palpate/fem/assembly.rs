@@ -1,7 +1,7 @@
 //! The global stiffness matrix over the free displacements, in elimination order.
 
-use faer::sparse::{SparseColMat, Triplet};
-use faer::traits::pulp::Arch;
+use faer::sparse::{SparseColMat, SymbolicSparseColMat};
+use faer::traits::pulp::{Arch, NullaryFnOnce};
 
 use super::FemError;
 use super::element::StiffnessRule;
@@ -51,16 +51,20 @@ impl StiffnessMatrix {
             }
             unknowns as usize
         };
-        let interior = dissection(mesh).into_iter().map(&mut number).last();
+        let mut order = dissection(mesh);
+        let interior = order.iter().copied().map(&mut number).last();
+        order.extend(&mesh.surface);
         let all = mesh.surface.iter().copied().map(number).last();
         let unknowns = all.unwrap_or(0);
+        let pattern = pattern(mesh, &order, &unknown);
+        let (starts, rows) = (pattern.col_ptr(), pattern.row_idx());
+        let mut values = vec![0.0; rows.len()];
         let rule = StiffnessRule::default();
         // From one metre to the probe's length; what is turned has its whole stiffness already.
         let length = match phantom.geometry() {
             Geometry::Plane => phantom.probe().length,
             Geometry::Axisymmetric => 1.0,
         };
-        let mut triplets = Vec::with_capacity(mesh.regions.len() * 78);
         let mut reaction = [vec![0.0; unknowns], vec![0.0; unknowns]];
         for (index, nodes) in mesh.elements().enumerate() {
             let positions = mesh.positions(nodes);
@@ -79,12 +83,18 @@ impl StiffnessMatrix {
             let row_of = |k: usize| unknown[nodes[k / 2] as usize][k % 2];
             for k in 0..2 * nodes.len() {
                 let column = row_of(k);
+                if column == HELD {
+                    continue;
+                }
+                let start = starts[column as usize] as usize;
+                let rows = &rows[start..starts[column as usize + 1] as usize];
                 for l in 0..2 * nodes.len() {
                     let value = length * stiffness[(l, k)];
                     match row_of(l) {
-                        _ if column == HELD => {}
                         HELD => reaction[l % 2][column as usize] += value,
-                        row if row <= column => triplets.push(Triplet::new(row, column, value)),
+                        row if row <= column => {
+                            values[start + rows.partition_point(|&above| above < row)] += value;
+                        }
                         _ => {}
                     }
                 }
@@ -94,8 +104,7 @@ impl StiffnessMatrix {
         let nodes = mesh.surface.iter();
         Ok(StiffnessMatrix {
             surface: nodes.flat_map(|&node| unknown[node].map(free)).collect(),
-            upper: SparseColMat::try_new_from_triplets(unknowns, unknowns, &triplets)
-                .map_err(|_| FemError::OutOfMemory)?,
+            upper: SparseColMat::new(pattern, values),
             unknown,
             first_surface_unknown: interior.unwrap_or(0),
             reaction,
@@ -113,41 +122,101 @@ impl StiffnessMatrix {
         (unknown != HELD).then_some(unknown as usize)
     }
 
-    /// Subtracts K u from the loads in `force`, N, for `B` × `L` displacement fields at once, one row for each unknown. Returns
-    /// ‖f − K u‖ / ‖f‖ of each; absolute, N, where there is no load.
+    /// Subtracts K u from the loads in `force`, N, for `B` × `L` displacement fields at once, one row for each unknown: there are
+    /// loads from unknown `loaded` on, and what stands in the rows before it is not read. Returns ‖f − K u‖ / ‖f‖ of each;
+    /// absolute, N, where there is no load.
     pub(super) fn residual<const L: usize, const B: usize>(
         &self,
         u: &[[[f64; L]; B]],
         force: &mut [[[f64; L]; B]],
+        loaded: usize,
     ) -> [[f64; L]; B] {
-        Arch::new().dispatch(|| {
-            let loads = norms(force);
-            for j in 0..self.unknowns() {
-                let entries = self.upper.row_idx_of_col(j).zip(self.upper.val_of_col(j));
-                for block in 0..B {
-                    let (at, mut left) = (u[j][block], force[j][block]);
-                    for (i, &value) in entries.clone() {
-                        for lane in 0..L {
-                            left[lane] -= value * u[i][block][lane];
-                        }
-                        if i != j {
-                            for lane in 0..L {
-                                force[i][block][lane] -= value * at[lane];
-                            }
-                        }
-                    }
-                    force[j][block] = left;
-                }
-            }
-            let mut relative = norms(force);
-            for (left, load) in (relative.as_flattened_mut().iter_mut()).zip(loads.as_flattened()) {
-                if *load != 0.0 {
-                    *left /= load;
-                }
-            }
-            relative
+        Arch::new().dispatch(Residual {
+            matrix: &self.upper,
+            u,
+            force,
+            loaded,
         })
     }
+}
+
+/// [`StiffnessMatrix::residual`], for the processor's vectors: a closure would be compiled without them.
+struct Residual<'a, const L: usize, const B: usize> {
+    matrix: &'a SparseColMat<u32, f64>,
+    u: &'a [[[f64; L]; B]],
+    force: &'a mut [[[f64; L]; B]],
+    loaded: usize,
+}
+
+impl<const L: usize, const B: usize> NullaryFnOnce for Residual<'_, L, B> {
+    type Output = [[f64; L]; B];
+
+    #[inline(always)]
+    fn call(self) -> [[f64; L]; B] {
+        let (u, force) = (self.u, self.force);
+        let loads = norms(&force[self.loaded..]);
+        for j in 0..u.len() {
+            let rows = self.matrix.row_idx_of_col(j);
+            let entries = rows.zip(self.matrix.val_of_col(j));
+            for block in 0..B {
+                // Columns before this one have left its row alone.
+                let mut left = match j < self.loaded {
+                    true => [0.0; L],
+                    false => force[j][block],
+                };
+                let at = u[j][block];
+                for (i, &value) in entries.clone() {
+                    for lane in 0..L {
+                        left[lane] = value.mul_add(-u[i][block][lane], left[lane]);
+                    }
+                    if i != j {
+                        for lane in 0..L {
+                            let row = &mut force[i][block][lane];
+                            *row = value.mul_add(-at[lane], *row);
+                        }
+                    }
+                }
+                force[j][block] = left;
+            }
+        }
+        let mut relative = norms(force);
+        for (left, load) in (relative.as_flattened_mut().iter_mut()).zip(loads.as_flattened()) {
+            if *load != 0.0 {
+                *left /= load;
+            }
+        }
+        relative
+    }
+}
+
+/// The rows on and above the diagonal of each column: unknowns of nodes that share an element, where the nodes are eliminated in
+/// this order.
+fn pattern(mesh: &Mesh, order: &[usize], unknown: &[[u32; 2]]) -> SymbolicSparseColMat<u32> {
+    let mut places = vec![0; mesh.nodes.len()];
+    for (place, &node) in order.iter().enumerate() {
+        places[node] = place;
+    }
+    let mut around = vec![Vec::new(); mesh.nodes.len()];
+    for nodes in mesh.elements() {
+        for &node in nodes {
+            let before = nodes.iter().map(|&other| places[other as usize]);
+            around[node as usize].extend(before.filter(|place| *place <= places[node as usize]));
+        }
+    }
+    let is_free = |unknown: &u32| *unknown != HELD;
+    let (mut starts, mut rows) = (vec![0], Vec::with_capacity(25 * mesh.nodes.len()));
+    for &node in order {
+        let before = &mut around[node];
+        before.sort_unstable();
+        before.dedup();
+        for column in unknown[node].into_iter().filter(is_free) {
+            let above = before.iter().flat_map(|&place| unknown[order[place]]);
+            rows.extend(above.filter(|row| *row <= column));
+            starts.push(rows.len() as u32);
+        }
+    }
+    let size = starts.len() - 1;
+    SymbolicSparseColMat::new_checked(size, size, starts, None, rows)
 }
 
 /// The size of each of `B` × `L` fields.
@@ -157,7 +226,7 @@ fn norms<const L: usize, const B: usize>(fields: &[[[f64; L]; B]]) -> [[f64; L];
     for row in fields {
         for (squares, values) in squares.iter_mut().zip(row) {
             for lane in 0..L {
-                squares[lane] += values[lane] * values[lane];
+                squares[lane] = values[lane].mul_add(values[lane], squares[lane]);
             }
         }
     }

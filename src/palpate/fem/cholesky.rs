@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::inverse::{inverse, inverse_scratch};
-use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::linalg::matmul::triangular::{BlockStructure, matmul};
+use faer::reborrow::ReborrowMut;
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::{
@@ -15,7 +16,7 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::{Conj, Mat, MatMut, Par, Side};
+use faer::{Accum, Conj, Mat, MatMut, MatRef, Par, Side};
 
 use super::FemError;
 use super::assembly::StiffnessMatrix;
@@ -64,6 +65,9 @@ pub(super) fn corner<'a>(
     for s in 0..symbolic.n_supernodes() {
         let supernode = supernode(s);
         let (start, columns) = (supernode.start(), supernode.val());
+        if start + columns.ncols() <= first {
+            continue;
+        }
         let diagonal = (start..start + columns.ncols())
             .chain(supernode.pattern().iter().map(|&row| row as usize));
         for (i, row) in diagonal.enumerate() {
@@ -140,14 +144,17 @@ impl Factor {
             MemStack::new(&mut memory),
         );
         let size = matrix.surface.len();
-        Ok(Mat::from_fn(size, size, |row, column| {
-            match (matrix.surface[row], matrix.surface[column]) {
-                (Some(row), Some(column)) => {
-                    lower[(row.max(column) - first, row.min(column) - first)]
-                }
-                _ => 0.0,
+        let mut compliance = Mat::zeros(size, size);
+        for (place, unknown) in matrix.surface.iter().enumerate() {
+            let Some(column) = unknown else { continue };
+            let column = lower.col_as_slice(column - first);
+            let to = compliance.col_as_slice_mut(place)[place..].iter_mut();
+            for (to, unknown) in to.zip(&matrix.surface[place..]) {
+                *to = unknown.map_or(0.0, |row| column[row - first]);
             }
-        }))
+        }
+        reflect(&mut compliance);
+        Ok(compliance)
     }
 
     /// Solves K u = f with one step of iterative refinement; returns u and the relative residual.
@@ -164,12 +171,12 @@ impl Factor {
         let force = force.as_chunks::<1>().0.as_chunks::<1>().0;
         let (mut u, mut correction, mut rest) = (force.to_vec(), force.to_vec(), force.to_vec());
         self.solve_once(u.as_flattened_mut().as_flattened_mut())?;
-        matrix.residual(&u, &mut correction);
+        matrix.residual(&u, &mut correction, 0);
         self.solve_once(correction.as_flattened_mut().as_flattened_mut())?;
         for ([[u]], [[correction]]) in u.iter_mut().zip(&correction) {
             *u += correction;
         }
-        let [[left]] = matrix.residual(&u, &mut rest);
+        let [[left]] = matrix.residual(&u, &mut rest, 0);
         check_residual(left)?;
         Ok((u.into_flattened().into_flattened(), left))
     }
@@ -198,10 +205,22 @@ impl Factor {
         let (n, fields) = (u.len(), B * L);
         let first = n - self.surface.nrows();
         u[..first].fill([[0.0; L]; B]);
+        let at_surface = u[first..].to_vec();
+        let at_surface = at_surface.as_flattened().as_flattened();
+        let at_surface = MatRef::from_row_major_slice(at_surface, n - first, fields);
         let u = u.as_flattened_mut().as_flattened_mut();
         let mut u = MatMut::from_row_major_slice_mut(u, n, fields);
-        let mut surface = u.rb_mut().split_at_row_mut(first).1;
-        surface.copy_from(self.surface.transpose() * surface.rb());
+        matmul(
+            u.rb_mut().split_at_row_mut(first).1,
+            BlockStructure::Rectangular,
+            Accum::Replace,
+            self.surface.transpose(),
+            BlockStructure::TriangularUpper,
+            at_surface,
+            BlockStructure::Rectangular,
+            1.0,
+            Par::Seq,
+        );
         let factor = self.factor();
         let mut memory = scratch(
             factor
@@ -210,6 +229,19 @@ impl Factor {
         )?;
         factor.l_transpose_solve_with_conj(Conj::No, u, Par::Seq, MemStack::new(&mut memory));
         Ok(())
+    }
+}
+
+/// Makes a square matrix symmetric: what stands below its diagonal, above it too.
+pub(super) fn reflect(matrix: &mut Mat<f64>) {
+    /// Columns that are read at once, so that what is written lies together.
+    const TILE: usize = 8;
+    for first in (0..matrix.ncols()).step_by(TILE) {
+        for row in first + 1..matrix.nrows() {
+            for column in first..row.min(first + TILE) {
+                matrix[(column, row)] = matrix[(row, column)];
+            }
+        }
     }
 }
 

@@ -10,10 +10,11 @@ use std::ops::Range;
 
 use faer::linalg::solvers::{Llt, Solve};
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
-use faer::traits::pulp::Arch;
+use faer::traits::pulp::{Arch, NullaryFnOnce};
 use faer::{Col, Mat, Par, Side};
 use nalgebra::Vector2;
 
+use super::cholesky::reflect;
 use super::mesh::Mesh;
 use super::{FemError, Pose};
 use crate::force::Force;
@@ -157,20 +158,27 @@ fn nodes_of(point: usize) -> [(usize, f64); 3] {
 }
 
 /// Adds to the displacements from place `first` on what forces at places do, each with its place, by the compliance of all places.
-fn push(u: &mut [[f64; 2]], compliance: &Mat<f64>, first: usize, forces: &[(usize, [f64; 2])]) {
-    Arch::new().dispatch(|| {
-        for (place, force) in forces {
-            let column = |k| &compliance.col_as_slice(2 * place + k)[2 * first..];
-            for ((u, x), y) in u
-                .as_flattened_mut()
-                .iter_mut()
-                .zip(column(0))
-                .zip(column(1))
-            {
-                *u += force[0] * x + force[1] * y;
+struct Push<'a> {
+    displacements: &'a mut [[f64; 2]],
+    compliance: &'a Mat<f64>,
+    first: usize,
+    forces: &'a [(usize, [f64; 2])],
+}
+
+impl NullaryFnOnce for Push<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let displacements = self.displacements.as_flattened_mut();
+        for (place, force) in self.forces {
+            let column = |k| &self.compliance.col_as_slice(2 * place + k)[2 * self.first..];
+            let columns = column(0).iter().zip(column(1));
+            for (u, (x, y)) in displacements.iter_mut().zip(columns) {
+                *u = force[0].mul_add(*x, force[1].mul_add(*y, *u));
             }
         }
-    });
+    }
 }
 
 impl Surface {
@@ -185,33 +193,36 @@ impl Surface {
             }
         }
         let size = 2 * positions.len();
-        let mut points = Mat::<f64>::zeros(size, size);
+        let mut compliance = Mat::<f64>::zeros(size, size);
         for place in 0..size {
             let [a, b, c] = nodes_of(place / 2)
                 .map(|(node, n)| (n, of_nodes.col_as_slice(2 * node + place % 2)));
             let pushed = a.1.iter().zip(b.1).zip(c.1);
             let pushed: Vec<f64> =
                 (pushed.map(|((x, y), z)| a.0 * x + b.0 * y + c.0 * z)).collect();
-            for (row, u) in points.col_as_slice_mut(place).iter_mut().enumerate() {
+            let below = compliance.col_as_slice_mut(place).iter_mut().enumerate();
+            for (row, u) in below.skip(place) {
                 let [a, b, c] = nodes_of(row / 2).map(|(node, n)| n * pushed[2 * node + row % 2]);
                 *u = a + b + c;
             }
         }
-        let image = |place: usize| size - 2 - 2 * (place / 2) + place % 2;
-        let both = |row: usize, column: usize| points[(row, column)] + points[(column, row)];
-        let mut compliance = Mat::zeros(size, size);
-        for column in 0..size {
-            for row in column..size {
-                let sign = if row % 2 == column % 2 { 1.0 } else { -1.0 };
-                let value = if mesh.symmetric {
-                    0.25 * (both(row, column) + sign * both(image(row), image(column)))
-                } else {
-                    0.5 * both(row, column)
-                };
-                compliance[(row, column)] = value;
-                compliance[(column, row)] = value;
+        if mesh.symmetric {
+            // The mean with the mirror image, whose places run the other way.
+            let image = |place: usize| size - 2 - 2 * (place / 2) + place % 2;
+            for column in 0..size {
+                for row in column..size {
+                    let ends = [image(row), image(column)];
+                    let mirrored = (ends[0].max(ends[1]), ends[0].min(ends[1]));
+                    if (column, row) <= (mirrored.1, mirrored.0) {
+                        let sign = if row % 2 == column % 2 { 1.0 } else { -1.0 };
+                        let mean = 0.5 * (compliance[(row, column)] + sign * compliance[mirrored]);
+                        compliance[(row, column)] = mean;
+                        compliance[mirrored] = sign * mean;
+                    }
+                }
             }
         }
+        reflect(&mut compliance);
         Surface {
             positions,
             lengths,
@@ -240,7 +251,12 @@ impl Surface {
         let loads = forces.iter().copied().enumerate();
         let loads: Vec<_> = loads.filter(|(_, force)| *force != [0.0; 2]).collect();
         let mut displacements = vec![[0.0; 2]; nodes];
-        push(&mut displacements, &self.of_nodes, 0, &loads);
+        Arch::new().dispatch(Push {
+            displacements: &mut displacements,
+            compliance: &self.of_nodes,
+            first: 0,
+            forces: &loads,
+        });
         (displacements, forces)
     }
 
@@ -339,13 +355,12 @@ impl Surface {
     fn settle(&self, state: &mut ContactState, pose: Pose, reach: Range<usize>) -> Option<()> {
         let constraints = self.constraints(state, pose)?;
         let normals: Vec<Vector2<f64>> = constraints.iter().map(Constraint::normal).collect();
-        let pushed = self.between(&state.active, [&normals; 2]);
         let onto = |k: usize| {
             let u = Vector2::from(state.displacements[state.active[k]]);
             constraints[k].normal.dot(&u) - constraints[k].gap
         };
         let onto = Col::from_fn(constraints.len(), onto);
-        let pressures = pushed.llt(Side::Lower).ok()?.solve(onto);
+        let pressures = self.pushed(&state.active, &normals)?.solve(onto);
         for (&i, pressure) in state.active.iter().zip(pressures.iter()) {
             state.pressures[i] = *pressure;
         }
@@ -353,18 +368,26 @@ impl Surface {
         Some(())
     }
 
-    /// Displacements of the points in contact along one direction each, per force along another, m/N.
-    fn between(&self, active: &[usize], [of, by]: [&[Vector2<f64>]; 2]) -> Mat<f64> {
+    /// Displacements of the points in contact along one direction each, per force along another, m/N; on and below the diagonal, and
+    /// where `whole`, above it.
+    fn between(&self, active: &[usize], [of, by]: [&[Vector2<f64>]; 2], whole: bool) -> Mat<f64> {
         let mut compliance = Mat::zeros(active.len(), active.len());
         for (column, (&j, by)) in active.iter().zip(by).enumerate() {
             let [by_x, by_y] = [0, 1].map(|k| self.compliance.col_as_slice(2 * j + k));
             let u = |row| by_x[row] * by.x + by_y[row] * by.y;
-            let column = compliance.col_as_slice_mut(column).iter_mut();
-            for ((to, &i), of) in column.zip(active).zip(of) {
+            let first = if whole { 0 } else { column };
+            let column = compliance.col_as_slice_mut(column)[first..].iter_mut();
+            for ((to, &i), of) in column.zip(&active[first..]).zip(&of[first..]) {
                 *to = of.x * u(2 * i) + of.y * u(2 * i + 1);
             }
         }
         compliance
+    }
+
+    /// The factor of C_nn; `None` where it is singular.
+    fn pushed(&self, active: &[usize], normals: &[Vector2<f64>]) -> Option<Llt<f64>> {
+        let compliance = self.between(active, [normals; 2], false);
+        compliance.llt(Side::Lower).ok()
     }
 
     /// Newton's matrix at a state. `None` where it is singular or the contact unstable, or if a point lies on the probe's
@@ -376,8 +399,8 @@ impl Surface {
         let constraints = self.constraints(state, pose)?;
         let normal: Vec<Vector2<f64>> = constraints.iter().map(Constraint::normal).collect();
         let tangent: Vec<Vector2<f64>> = constraints.iter().map(Constraint::tangent).collect();
-        let between = |of, by| self.between(&state.active, [of, by]);
-        let pushed = between(&normal, &normal).llt(Side::Lower).ok()?;
+        let between = |of, by| self.between(&state.active, [of, by], true);
+        let pushed = self.pushed(&state.active, &normal)?;
         let across = between(&tangent, &normal);
         let mut slid = between(&tangent, &tangent);
         let mut w = across.transpose().to_owned();
@@ -436,12 +459,12 @@ impl Surface {
     fn response(&self, state: &ContactState, pose: Pose, reach: Range<usize>) -> Vec<[f64; 2]> {
         let mut u = state.displacements.clone();
         u[reach.clone()].fill([0.0; 2]);
-        push(
-            &mut u[reach.clone()],
-            &self.compliance,
-            reach.start,
-            &self.forces(state, pose),
-        );
+        Arch::new().dispatch(Push {
+            displacements: &mut u[reach.clone()],
+            compliance: &self.compliance,
+            first: reach.start,
+            forces: &self.forces(state, pose),
+        });
         u
     }
 
@@ -465,8 +488,10 @@ impl Surface {
         };
         let mut violations: Vec<f64> = reach.clone().map(violation).collect();
         let is_pulled = |i: &&usize| state.pressures[**i] < 0.0;
-        let left = state.active.iter().take_while(is_pulled).count();
-        let right = state.active.iter().rev().take_while(is_pulled).count();
+        // Of the points pulled at an end the inner half would come back.
+        let half = |pulled: usize| pulled.div_ceil(2);
+        let left = half(state.active.iter().take_while(is_pulled).count());
+        let right = half(state.active.iter().rev().take_while(is_pulled).count());
         if (1..state.active.len()).contains(&(left + right)) {
             for &i in &state.active[left..state.active.len() - right] {
                 violations[i - reach.start] = 0.0;

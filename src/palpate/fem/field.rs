@@ -1,6 +1,6 @@
 //! What the gel does below the surface: displacement fields, and the checks on them.
 
-use faer::traits::pulp::Arch;
+use faer::traits::pulp::{Arch, NullaryFnOnce};
 
 use super::FemError;
 use super::assembly::StiffnessMatrix;
@@ -88,7 +88,7 @@ impl SamplingPoint {
                 let u = u(row[i] as usize);
                 for j in 0..2 {
                     for lane in 0..L {
-                        gradient[i][j][lane] += shape[j] * u[lane];
+                        gradient[i][j][lane] = shape[j].mul_add(u[lane], gradient[i][j][lane]);
                     }
                 }
             }
@@ -157,7 +157,8 @@ impl<'a> Checker<'a> {
         poses: &[(AtSurface, AtSurface)],
     ) -> Result<Vec<FieldCheck>, FemError> {
         let (matrix, unknowns) = (self.matrix, self.matrix.unknowns());
-        self.forces.as_flattened_mut().as_flattened_mut().fill(0.0);
+        let loaded = matrix.first_surface_unknown;
+        self.forces[loaded..].fill([[0.0; LANES]; BLOCKS]);
         for (w, (u, force)) in poses.iter().enumerate() {
             let (block, lane) = (w / LANES, w % LANES);
             let components = u.as_flattened().iter().zip(force.as_flattened());
@@ -187,8 +188,11 @@ impl<'a> Checker<'a> {
             }
             balance
         });
-        let residual = matrix.residual(u, &mut self.forces);
-        let min_det = self.min_det();
+        let residual = matrix.residual(u, &mut self.forces, loaded);
+        let min_det = Arch::new().dispatch(Smallest {
+            samples: self.samples,
+            displacements: &self.displacements,
+        });
         let check = |w: usize| {
             let of = |row: &Row| row[w / LANES][w % LANES];
             FieldCheck {
@@ -199,28 +203,36 @@ impl<'a> Checker<'a> {
         };
         Ok((0..poses.len()).map(check).collect())
     }
+}
 
-    /// The smallest det(I + ∇u) of each field, away from sharp corners.
-    fn min_det(&self) -> Row {
+/// The smallest det(I + ∇u) of each field, away from sharp corners.
+struct Smallest<'a> {
+    samples: &'a [SamplingPoint],
+    displacements: &'a [Row],
+}
+
+impl NullaryFnOnce for Smallest<'_> {
+    type Output = Row;
+
+    #[inline(always)]
+    fn call(self) -> Row {
         let mut smallest = [[f64::INFINITY; LANES]; BLOCKS];
-        Arch::new().dispatch(|| {
-            for sample in self.samples.iter().filter(|sample| !sample.singular) {
-                for (block, smallest) in smallest.iter_mut().enumerate() {
-                    let u = |row: usize| &self.displacements[row][block];
-                    let [[xx, xy], [yx, yy]] = sample.gradient(u);
-                    let circle = sample.circle(u);
-                    for lane in 0..LANES {
-                        let gradient = [[xx[lane], xy[lane]], [yx[lane], yy[lane]]];
-                        let det = determinant(gradient) * circle[lane];
-                        smallest[lane] = if det < smallest[lane] {
-                            det
-                        } else {
-                            smallest[lane]
-                        };
-                    }
+        for sample in self.samples.iter().filter(|sample| !sample.singular) {
+            for (block, smallest) in smallest.iter_mut().enumerate() {
+                let u = |row: usize| &self.displacements[row][block];
+                let [[xx, xy], [yx, yy]] = sample.gradient(u);
+                let circle = sample.circle(u);
+                for lane in 0..LANES {
+                    let gradient = [[xx[lane], xy[lane]], [yx[lane], yy[lane]]];
+                    let det = determinant(gradient) * circle[lane];
+                    smallest[lane] = if det < smallest[lane] {
+                        det
+                    } else {
+                        smallest[lane]
+                    };
                 }
             }
-        });
+        }
         smallest
     }
 }

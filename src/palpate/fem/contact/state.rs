@@ -1,5 +1,8 @@
 //! What the probe does to the surface at one pose.
 
+/// Each end of the contact moves more slowly the further it has gone: by about this part of its last step in the next.
+const SLOWER: f64 = 0.8;
+
 /// Surface displacements and contact forces at one pose.
 ///
 /// Implements: FEM-009.
@@ -41,7 +44,8 @@ impl ContactState {
             let [then_first, then_last] = ends(earlier).unwrap_or([first.midpoint(last); 2]);
             let most = (self.pressures.len() - 1) as f64;
             let [first, last] = [(first, then_first), (last, then_last)]
-                .map(|(now, then)| on(now as f64, then as f64).clamp(0.0, most) as usize);
+                .map(|(now, then)| now as f64 + SLOWER * ahead * (now as f64 - then as f64))
+                .map(|end| end.clamp(0.0, most) as usize);
             state.active = (first..=last).collect();
         }
         for &point in &state.active {

@@ -40,7 +40,7 @@ fn a_shift_of_everything_costs_nothing() {
             let mut rest: Vec<[[f64; 1]; 1]> = (matrix.reaction[direction].iter())
                 .map(|&reaction| [[-reaction]])
                 .collect();
-            matrix.residual(&shift, &mut rest);
+            matrix.residual(&shift, &mut rest, 0);
             let left = rest.iter().fold(0.0, |a: f64, [[f]]| a.max(f.abs()));
             let diagonal = (0..n).map(|k| matrix.upper.val_of_col(k).last().copied().unwrap());
             // Rows of some thirty entries of at most the largest diagonal.
