@@ -59,6 +59,7 @@ use output::Format;
 /// assert_ne!(code, ExitCode::SUCCESS);
 /// ```
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    platform::keep_memory();
     program(arguments, |arguments: CommandLine| {
         output::be_quiet(arguments.quiet);
         match arguments.command {

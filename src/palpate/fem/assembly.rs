@@ -196,17 +196,24 @@ fn pattern(mesh: &Mesh, order: &[usize], unknown: &[[u32; 2]]) -> SymbolicSparse
     for (place, &node) in order.iter().enumerate() {
         places[node] = place;
     }
-    let mut around = vec![Vec::new(); mesh.nodes.len()];
-    for nodes in mesh.elements() {
-        for &node in nodes {
-            let before = nodes.iter().map(|&other| places[other as usize]);
-            around[node as usize].extend(before.filter(|place| *place <= places[node as usize]));
-        }
+    // Nodes have some six elements around them at the most.
+    let none = |_| Vec::with_capacity(8);
+    let mut around: Vec<Vec<u32>> = (0..mesh.nodes.len()).map(none).collect();
+    for (element, nodes) in mesh.elements().enumerate() {
+        nodes
+            .iter()
+            .for_each(|&node| around[node as usize].push(element as u32));
     }
     let is_free = |unknown: &u32| *unknown != HELD;
     let (mut starts, mut rows) = (vec![0], Vec::with_capacity(25 * mesh.nodes.len()));
-    for &node in order {
-        let before = &mut around[node];
+    let mut before = Vec::new();
+    for (place, &node) in order.iter().enumerate() {
+        before.clear();
+        for &element in &around[node] {
+            let nodes = mesh.nodes_of(element).iter();
+            let places = nodes.map(|&node| places[node as usize]);
+            before.extend(places.filter(|other| *other <= place));
+        }
         before.sort_unstable();
         before.dedup();
         for column in unknown[node].into_iter().filter(is_free) {

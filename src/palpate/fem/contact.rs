@@ -56,6 +56,8 @@ const SIMULTANEOUS_CHANGES: usize = 25;
 /// Where nothing is in contact yet, the points that are at least this part as deep inside the probe as the deepest come first: those
 /// further out would leave the contact again, two by two.
 const FIRST_TAKEN: f64 = 0.8;
+/// Of the points in contact that are pulled, those at least this part as much as the worst are dropped first: the others would come back.
+const FIRST_DROPPED: f64 = 0.8;
 /// Iterations after which a pose has not converged.
 const MOST_ITERATIONS: usize = 120;
 
@@ -488,19 +490,20 @@ impl Surface {
         };
         let mut violations: Vec<f64> = reach.clone().map(violation).collect();
         let is_pulled = |i: &&usize| state.pressures[**i] < 0.0;
-        // Of the points pulled at an end the inner half would come back.
-        let half = |pulled: usize| pulled.div_ceil(2);
-        let left = half(state.active.iter().take_while(is_pulled).count());
-        let right = half(state.active.iter().rev().take_while(is_pulled).count());
+        let left = state.active.iter().take_while(is_pulled).count();
+        let right = state.active.iter().rev().take_while(is_pulled).count();
         if (1..state.active.len()).contains(&(left + right)) {
             for &i in &state.active[left..state.active.len() - right] {
                 violations[i - reach.start] = 0.0;
             }
         }
         let worst = violations.iter().copied().fold(0.0, f64::min);
+        let pulls = state.active.iter().map(|i| violations[i - reach.start]);
+        let worst_pull = pulls.fold(0.0, f64::min);
         let is_large = |&(_, v): &(usize, f64)| v < 0.0 && v <= least * worst;
-        for (i, _) in reach.zip(violations).filter(is_large) {
+        for (i, violation) in reach.zip(violations).filter(is_large) {
             match state.active.binary_search(&i) {
+                Ok(_) if violation > FIRST_DROPPED * worst_pull => {}
                 Ok(at) => {
                     state.active.remove(at);
                     state.pressures[i] = 0.0;

@@ -29,15 +29,20 @@ pub fn circumcircle([a, b, c]: [Point; 3]) -> (Point, f64) {
     (a + arm, arm.norm())
 }
 
-/// The smallest angle of a triangle, degrees: opposite of the shortest edge, whose sine is that edge over the circumcircle's
-/// diameter. 0 for a triangle that is turned over.
-pub fn smallest_angle(corners: [Point; 3]) -> f64 {
+/// The sine of a triangle's smallest angle: the shortest edge, opposite of it, over the circumcircle's diameter. 0 for a triangle
+/// that is turned over.
+pub fn smallest_sine(corners: [Point; 3]) -> f64 {
     if doubled_area(corners) > 0.0 {
         let (_, radius) = circumcircle(corners);
-        libm::asin(shortest_edge(corners) / (2.0 * radius)).to_degrees()
+        shortest_edge(corners) / (2.0 * radius)
     } else {
         0.0
     }
+}
+
+/// The smallest angle of a triangle, degrees; 0 for one that is turned over.
+pub fn smallest_angle(corners: [Point; 3]) -> f64 {
+    libm::asin(smallest_sine(corners)).to_degrees()
 }
 
 #[cfg(test)]

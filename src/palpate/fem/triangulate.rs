@@ -4,19 +4,20 @@
 use core::f64::consts::PI;
 use std::collections::HashMap;
 
+use spade::handles::FixedVertexHandle;
 use spade::{
-    ConstrainedDelaunayTriangulation, HierarchyHintGenerator, Point2, PositionInTriangulation,
-    Triangulation as _,
+    ConstrainedDelaunayTriangulation, Point2, PositionInTriangulation, Triangulation as _,
 };
 
 use super::FemError;
 use super::size::SizeField;
-use super::triangle::{Point, circumcircle, doubled_area, mean, shortest_edge, smallest_angle};
+use super::triangle::{
+    Point, circumcircle, doubled_area, mean, shortest_edge, smallest_angle, smallest_sine,
+};
 use crate::phantom::{Ellipse, Outline, Phantom};
 use crate::refusal::Refusal;
 
-type Delaunay =
-    ConstrainedDelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
+type Delaunay = ConstrainedDelaunayTriangulation<Point2<f64>>;
 
 /// A triangle is refined if an equilateral one with the same circumcircle would be larger than the wanted size by this
 /// factor, or if it is flat and larger than a part of it.
@@ -32,8 +33,8 @@ const REFINEMENTS: usize = 60;
 const SMOOTHINGS: usize = 5;
 /// Rounds in which triangles that are still flat are cut up.
 const REPAIRS: usize = 12;
-/// Smoothing that would leave a smaller angle, degrees, gives way to a search for the best place, in so many steps.
-const GOOD_ANGLE: f64 = 30.0;
+/// Smoothing that would leave a smaller angle, by its sine, gives way to a search for the best place, in so many steps.
+const GOOD_SINE: f64 = 0.5;
 const SEARCH_STEPS: usize = 12;
 /// Steps of the quadrature along a line, for each expected piece and at least.
 const STEPS: [usize; 2] = [16, 256];
@@ -127,10 +128,13 @@ impl Triangulation<'_> {
 
     /// The smallest angle of all, degrees, and its place.
     fn flattest(&self) -> (f64, Point) {
+        let sine = |t: &&[usize; 3]| smallest_sine(self.at(t));
+        let flattest = self
+            .triangles
+            .iter()
+            .min_by(|a, b| sine(a).total_cmp(&sine(b)));
         let angle = |t: &[usize; 3]| (smallest_angle(self.at(t)), self.corners[t[0]]);
-        let angles = self.triangles.iter().map(angle);
-        let flattest = angles.min_by(|a, b| a.0.total_cmp(&b.0));
-        flattest.unwrap_or((180.0, Point::zeros()))
+        flattest.map_or((180.0, Point::zeros()), angle)
     }
 
     fn draw_lines(&mut self, phantom: &Phantom) {
@@ -226,13 +230,26 @@ impl Triangulation<'_> {
         self.corners.len() - 1
     }
 
-    /// Corner by corner, since spade's bulk loading depends on a random order.
+    /// Corner by corner, since spade's bulk loading depends on a random order; its search for the place of each begins at a neighbour
+    /// of before.
     fn delaunay(&self) -> Result<Delaunay, FemError> {
         let mut delaunay = Delaunay::new();
         let crossing = |corner: usize| flat(self.corners[corner], 0.0);
-        let mut handles = Vec::with_capacity(self.corners.len());
+        let mut neighbours = vec![None; self.corners.len()];
+        for triangle in &self.triangles {
+            let least = triangle.iter().min();
+            for &corner in triangle.iter().filter(|corner| Some(*corner) != least) {
+                neighbours[corner] = least;
+            }
+        }
+        let mut handles: Vec<FixedVertexHandle> = Vec::with_capacity(self.corners.len());
         for (corner, p) in self.corners.iter().enumerate() {
-            match delaunay.insert(Point2::new(p.x, p.y)) {
+            let p = Point2::new(p.x, p.y);
+            let inserted = match neighbours[corner] {
+                Some(&near) => delaunay.insert_with_hint(p, handles[near]),
+                None => delaunay.insert(p),
+            };
+            match inserted {
                 Ok(handle) if handle.index() == corner => handles.push(handle),
                 _ => return Err(crossing(corner)),
             }
@@ -247,10 +264,7 @@ impl Triangulation<'_> {
     }
 
     fn connect(&mut self) -> Result<(), FemError> {
-        let delaunay = self.delaunay()?;
-        let faces = delaunay.inner_faces();
-        let faces = faces.map(|face| face.vertices().map(|v| v.index()));
-        self.triangles = faces.collect();
+        self.triangles = triangles(&self.delaunay()?);
         Ok(())
     }
 
@@ -270,20 +284,23 @@ impl Triangulation<'_> {
         let mut delaunay = self.delaunay()?;
         let circles: Vec<_> = self.segments.iter().map(|s| self.circle(s)).collect();
         for _ in 0..REFINEMENTS {
-            let refined = |corners: [Point; 3]| {
+            let refined = |(near, corners): (FixedVertexHandle, [Point; 3])| {
                 let (centre, radius) = circumcircle(corners);
                 let large = radius * libm::sqrt(3.0) / self.size.at(mean(corners));
                 let flat = radius / shortest_edge(corners);
                 let refine = large > TOO_LARGE || flat > TOO_FLAT && large > FLAT_FROM;
-                refine.then_some((large.max(0.5 * flat), centre))
+                refine.then_some((large.max(0.5 * flat), centre, near))
             };
-            let faces = delaunay.inner_faces().map(|face| face.positions());
-            let triangles = faces.map(|corners| corners.map(|p| Point::new(p.x, p.y)));
-            let mut wanted: Vec<(f64, Point)> = triangles.filter_map(refined).collect();
+            let faces = delaunay.inner_faces();
+            let triangles = faces.map(|face| {
+                let [near, ..] = face.vertices();
+                (near.fix(), face.positions().map(|p| Point::new(p.x, p.y)))
+            });
+            let mut wanted: Vec<_> = triangles.filter_map(refined).collect();
             let place = |p: &Point| (p.x.to_bits(), p.y.to_bits());
-            wanted.sort_by(|(a, p), (b, q)| b.total_cmp(a).then(place(p).cmp(&place(q))));
+            wanted.sort_by(|(a, p, _), (b, q, _)| b.total_cmp(a).then(place(p).cmp(&place(q))));
             let before = self.corners.len();
-            for (_, point) in wanted {
+            for (_, point, near) in wanted {
                 let encloses = |(centre, r): &(Point, f64)| (centre - point).norm() < *r;
                 if !self.within(point) || circles.iter().any(encloses) {
                     continue;
@@ -291,7 +308,7 @@ impl Triangulation<'_> {
                 let apart = APART * self.size.at(point);
                 let close = |p: &Point2<f64>| (Point::new(p.x, p.y) - point).norm() < apart;
                 let vertex = Point2::new(point.x, point.y);
-                let crowded = match delaunay.locate(vertex) {
+                let crowded = match delaunay.locate_with_hint(vertex, near) {
                     PositionInTriangulation::OnFace(face) => {
                         delaunay.face(face).positions().iter().any(close)
                     }
@@ -301,7 +318,7 @@ impl Triangulation<'_> {
                     }
                     _ => true,
                 };
-                if !crowded && delaunay.insert(vertex).is_ok() {
+                if !crowded && delaunay.insert_with_hint(vertex, near).is_ok() {
                     self.push(point, false);
                 }
             }
@@ -309,7 +326,8 @@ impl Triangulation<'_> {
                 break;
             }
         }
-        self.connect()
+        self.triangles = triangles(&delaunay);
+        Ok(())
     }
 
     /// Adds the circumcentre of each triangle that is still flat, or cuts the pieces of lines in whose circles it lies.
@@ -369,7 +387,7 @@ impl Triangulation<'_> {
                 weights += weight;
             }
             let towards = sum / weights;
-            let smooth = self.smallest_around(corner, towards, &around[corner]) >= GOOD_ANGLE;
+            let smooth = self.smallest_around(corner, towards, &around[corner]) >= GOOD_SINE;
             self.corners[corner] = if smooth {
                 towards
             } else {
@@ -378,11 +396,11 @@ impl Triangulation<'_> {
         }
     }
 
-    /// The smallest angle, degrees, of the triangles around a corner if it stood at `at`.
+    /// The sine of the smallest angle of the triangles around a corner if it stood at `at`.
     fn smallest_around(&self, corner: usize, at: Point, around: &[[usize; 3]]) -> f64 {
         let moved = |k: usize| if k == corner { at } else { self.corners[k] };
-        let angle = |triangle: &[usize; 3]| smallest_angle(triangle.map(moved));
-        around.iter().map(angle).fold(180.0, f64::min)
+        let sine = |triangle: &[usize; 3]| smallest_sine(triangle.map(moved));
+        around.iter().map(sine).fold(1.0, f64::min)
     }
 
     /// Pattern search: steps in eight directions, halved where none helps.
@@ -396,9 +414,9 @@ impl Triangulation<'_> {
             for direction in 0..8 {
                 let (sin, cos) = libm::sincos(f64::from(direction) * 0.25 * PI);
                 let to = from + step * Point::new(cos, sin);
-                let angle = self.smallest_around(corner, to, around);
-                if angle > best {
-                    (best, at) = (angle, to);
+                let sine = self.smallest_around(corner, to, around);
+                if sine > best {
+                    (best, at) = (sine, to);
                 }
             }
             if at == from {
@@ -407,6 +425,14 @@ impl Triangulation<'_> {
         }
         at
     }
+}
+
+/// The corners of each triangle.
+fn triangles(delaunay: &Delaunay) -> Vec<[usize; 3]> {
+    let faces = delaunay.inner_faces();
+    faces
+        .map(|face| face.vertices().map(|v| v.index()))
+        .collect()
 }
 
 /// Where to cut a line, from 0 to 1, so that its pieces are about as long as wanted: equal shares of ∫ ds/h.

@@ -1,6 +1,6 @@
 //! What the probe does to the surface at one pose.
 
-/// Each end of the contact moves more slowly the further it has gone: by about this part of its last step in the next.
+/// Each end of the contact moves ever more slowly: in the next step by about this part of its last.
 const SLOWER: f64 = 0.8;
 
 /// Surface displacements and contact forces at one pose.
