@@ -42,7 +42,12 @@ pub fn smallest_sine(corners: [Point; 3]) -> f64 {
 
 /// The smallest angle of a triangle, degrees; 0 for one that is turned over.
 pub fn smallest_angle(corners: [Point; 3]) -> f64 {
-    libm::asin(smallest_sine(corners)).to_degrees()
+    degrees(smallest_sine(corners))
+}
+
+/// The angle, degrees, of this sine.
+pub fn degrees(sine: f64) -> f64 {
+    libm::asin(sine).to_degrees()
 }
 
 #[cfg(test)]

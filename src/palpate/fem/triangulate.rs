@@ -12,7 +12,7 @@ use spade::{
 use super::FemError;
 use super::size::SizeField;
 use super::triangle::{
-    Point, circumcircle, doubled_area, mean, shortest_edge, smallest_angle, smallest_sine,
+    Point, circumcircle, degrees, doubled_area, mean, shortest_edge, smallest_angle, smallest_sine,
 };
 use crate::phantom::{Ellipse, Outline, Phantom};
 use crate::refusal::Refusal;
@@ -33,8 +33,8 @@ const REFINEMENTS: usize = 60;
 const SMOOTHINGS: usize = 5;
 /// Rounds in which triangles that are still flat are cut up.
 const REPAIRS: usize = 12;
-/// Smoothing that would leave a smaller angle, by its sine, gives way to a search for the best place, in so many steps.
-const GOOD_SINE: f64 = 0.5;
+/// Smoothing that would leave a smaller angle, degrees, gives way to a search for the best place, in so many steps.
+const GOOD_ANGLE: f64 = 30.0;
 const SEARCH_STEPS: usize = 12;
 /// Steps of the quadrature along a line, for each expected piece and at least.
 const STEPS: [usize; 2] = [16, 256];
@@ -387,7 +387,7 @@ impl Triangulation<'_> {
                 weights += weight;
             }
             let towards = sum / weights;
-            let smooth = self.smallest_around(corner, towards, &around[corner]) >= GOOD_SINE;
+            let smooth = self.smallest_around(corner, towards, &around[corner]) >= GOOD_ANGLE;
             self.corners[corner] = if smooth {
                 towards
             } else {
@@ -396,11 +396,11 @@ impl Triangulation<'_> {
         }
     }
 
-    /// The sine of the smallest angle of the triangles around a corner if it stood at `at`.
+    /// The smallest angle, degrees, of the triangles around a corner if it stood at `at`.
     fn smallest_around(&self, corner: usize, at: Point, around: &[[usize; 3]]) -> f64 {
         let moved = |k: usize| if k == corner { at } else { self.corners[k] };
         let sine = |triangle: &[usize; 3]| smallest_sine(triangle.map(moved));
-        around.iter().map(sine).fold(1.0, f64::min)
+        degrees(around.iter().map(sine).fold(1.0, f64::min))
     }
 
     /// Pattern search: steps in eight directions, halved where none helps.
@@ -414,9 +414,9 @@ impl Triangulation<'_> {
             for direction in 0..8 {
                 let (sin, cos) = libm::sincos(f64::from(direction) * 0.25 * PI);
                 let to = from + step * Point::new(cos, sin);
-                let sine = self.smallest_around(corner, to, around);
-                if sine > best {
-                    (best, at) = (sine, to);
+                let angle = self.smallest_around(corner, to, around);
+                if angle > best {
+                    (best, at) = (angle, to);
                 }
             }
             if at == from {
