@@ -88,7 +88,7 @@ pub(super) enum Command {
         after_help = "Example:\n  palpate experiment --reference none.json --inclusion 4.6=map.json --journal answers.txt --seed 1"
     )]
     Experiment(experiment::ExperimentArguments),
-    /// Analyses the answers of such an experiment: proportions correct, differences, noise, and which force explains them
+    /// Analyses the answers of two-alternative forced-choice experiments: proportions correct, differences, noise, and which force explains them
     #[command(
         after_help = "Examples:\n  palpate psychophysics\n  palpate psychophysics counts.csv --format json"
     )]

@@ -23,13 +23,13 @@ use palpate::rows::Rows;
 /// Arguments of `palpate calibrate`.
 #[derive(Debug, Args)]
 pub struct CalibrateArguments {
-    /// Recorded indentations: CSV files with depth_mm, normal_force_n and, to see how the force relaxes, time_s; each from above the gel
+    /// Recorded indentations: CSV files with depth_mm, normal_force_n and, to see how the force relaxes, time_s; each begins above the gel
     #[arg(value_name = "CURVE.csv", required = true)]
     curves: Vec<PathBuf>,
     /// The gel and the probe (built-in phantom or file), whose moduli are found; without it an empirical law is fitted
     #[arg(long, value_name = "NAME|FILE")]
     phantom: Option<String>,
-    /// A layer whose modulus is found, by its name; may be given twice [default: one factor of all moduli]
+    /// A layer whose modulus is found, by its name; may be given twice [default: one factor for all moduli]
     #[arg(long = "layer", value_name = "LAYER", requires = "phantom")]
     layers: Vec<String>,
     /// Lateral position of the curves in mm, or of each of several
@@ -54,7 +54,7 @@ pub struct CalibrateArguments {
     /// Writes how well the depth is known, for 'palpate detect --gel-uncertainty'
     #[arg(long, value_name = "FILE.toml")]
     uncertainty_out: Option<PathBuf>,
-    /// Writes a figure as SVG: each curve, its fit, and what is left
+    /// Writes a figure as SVG: each curve, its fit, and the residual
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
     /// Output format
@@ -79,10 +79,8 @@ pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), CliError> {
         .map(|path| Curve::read(path, &layout));
     let curves = curves.collect::<Result<Vec<_>, _>>()?;
     let Some(laterals) = for_each(&arguments.laterals, curves.len()) else {
-        let (positions, count) = (arguments.laterals.len(), curves.len());
-        refuse!(
-            "--lateral-mm has {positions} positions for {count} curves; give one, or one for each"
-        )
+        let positions = arguments.laterals.len();
+        refuse!("--lateral-mm has {positions} positions; give one, or one for each curve")
     };
     let mut found = Vec::new();
     for (curve, lateral) in curves.iter().zip(laterals) {
@@ -123,7 +121,10 @@ fn layers(
             Some(number) => numbers.push(number),
             None => {
                 let names: Vec<_> = all.iter().map(|layer| &*layer.name).collect();
-                refuse!("--layer {name:?}: give each once, of {}", names.join(", "));
+                refuse!(
+                    "--layer {name:?} is unknown or given twice; give each once, of {}",
+                    names.join(", ")
+                );
             }
         }
     }

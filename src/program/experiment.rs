@@ -30,7 +30,7 @@ pub struct ExperimentArguments {
     /// The force map without inclusion
     #[arg(long, value_name = "FILE")]
     reference: PathBuf,
-    /// A force map with an inclusion, and its name in the results: 6.6=map.json; once for each
+    /// A force map with an inclusion, and its name in the results: 6.6=map.json; give it once for each
     #[arg(long, value_name = "NAME=FILE", required = true, value_parser = named_file)]
     inclusion: Vec<(String, PathBuf)>,
     /// The file of the answers; an aborted experiment continues from it

@@ -15,9 +15,10 @@ pub struct PathArguments {
     /// Depths of the probe in mm, a pass for each in turn, there and back: a list such as 1,2,3,4
     #[arg(long = "depths-mm", value_name = "LIST", value_parser = length, value_delimiter = ',', allow_hyphen_values = true)]
     depths: Vec<f64>,
-    /// Where a pass begins and ends, in mm
+    /// Where a pass begins, in mm
     #[arg(long = "from-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "-8")]
     from: f64,
+    /// Where it ends, and the way back begins, in mm
     #[arg(long = "to-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "8")]
     to: f64,
     /// Speed of a pass in mm/s

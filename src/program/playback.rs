@@ -42,8 +42,8 @@ enum DeviceName {
     Sim,
     /// HID device of this machine; --vid, --pid or --serial select one of several.
     Hid,
-    /// Bridge to a device of another kind, which starts this command: reports of positions in on standard input, of forces out on standard
-    /// output, the summary on standard error.
+    /// Bridge to a device of another kind, which starts this command, writes positions to its standard input and reads forces from its
+    /// standard output; the summary is on standard error.
     Pipe,
 }
 

@@ -48,7 +48,7 @@ pub struct SimulateArguments {
 /// What leads the probe, and what the gel does beside its elastic force.
 #[derive(Debug, Args)]
 struct MotionArguments {
-    /// A hand of a mass in kg, a damping in N·s/m and a stiffness in N/m tracks the path [default: a stage follows it]
+    /// A hand with a mass in kg, a damping in N·s/m and a stiffness in N/m tracks the path [default: a stage follows it]
     #[arg(long, value_name = "M,B,K", value_parser = several::<3>, allow_hyphen_values = true)]
     hand: Option<[f64; 3]>,
     /// Root mean square of the tremor along x and along the depth, in mm
@@ -57,7 +57,7 @@ struct MotionArguments {
     /// Frequency of the tremor
     #[arg(long, value_name = "HZ", value_parser = at_least_0, allow_hyphen_values = true, default_value = "10")]
     tremor_hz: f64,
-    /// Share of the force that relaxes, and the time constant of that in s
+    /// Share of the force that relaxes, and its time constant in s
     #[arg(long, value_name = "G,S", value_parser = several::<2>, allow_hyphen_values = true)]
     relaxation: Option<[f64; 2]>,
     /// Coefficient of friction between probe and gel
@@ -85,7 +85,7 @@ struct SensorArguments {
     /// Standard deviation of the error of each measured depth, in mm
     #[arg(long = "depth-noise-mm", value_name = "S", value_parser = length_or_zero, allow_hyphen_values = true, default_value = "0")]
     depth_noise: f64,
-    /// Leaves out the column of depths, as of a laboratory that states one depth
+    /// Leaves out the column of depths, as a laboratory does that states one depth
     #[arg(long)]
     no_depths: bool,
 }

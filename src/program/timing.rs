@@ -54,7 +54,7 @@ enum Printed {
     Table,
     /// For programs; keys carry the unit.
     Json,
-    /// For spreadsheets: a line for each value, its key and itself.
+    /// For spreadsheets: a line for each value, with its key.
     Csv,
     /// For CI: JUnit XML.
     Junit,

@@ -39,11 +39,11 @@ pub struct DetectArguments {
 /// The format of an answer, or of many.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum AnswerFormat {
-    /// For people; of many records a line each.
+    /// For people; one line for each of several records.
     Table,
-    /// For programs; keys carry the unit. Of many records a line each.
+    /// For programs; keys carry the unit. One line for each of several records.
     Json,
-    /// A line for each record.
+    /// One line for each record.
     Csv,
 }
 

@@ -179,7 +179,7 @@ fn signals(
         }
     }
     if maps.len() < 2 {
-        let found = format!("{} inclusions with a map", maps.len());
+        let found = format!("inclusions with a map: {}", maps.len());
         return Err(Refusal::state(found, "give at least two"));
     }
     let reference = sweep(reference, half_sweep).map_err(|error| error.in_file("reference"))?;

@@ -30,7 +30,7 @@ pub fn sweep(map: &ForceMap, half: Option<f64>) -> Result<ForceMap, Refusal> {
     let inside = whole.table().laterals().iter().copied();
     let inside: Vec<f64> = inside.filter(|&x| is_within(x, half)).collect();
     if inside.len() < 2 {
-        let found = format!("{} lateral positions within --sweep-mm", inside.len());
+        let found = format!("lateral positions within --sweep-mm: {}", inside.len());
         return Err(Refusal::state(found, "give at least two"));
     }
     whole.at_laterals(&inside)

@@ -296,7 +296,7 @@ fn what_does_not_fit_is_refused_or_noted() {
     for (named, words) in [
         (
             &[("2.6", &a)][..],
-            "1 inclusions with a map; give at least two",
+            "inclusions with a map: 1; give at least two",
         ),
         (&[("2.6", &a), ("2.6", &b)], "\"2.6\" has two maps"),
         (&[("2.6", &a), ("3", &b)], unknown),
