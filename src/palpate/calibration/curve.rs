@@ -5,6 +5,7 @@ use std::path::Path;
 use crate::csv::{Column, Layout, Rows};
 use crate::refusal::Refusal;
 use crate::stats::error::check_samples;
+use crate::text::extremes;
 
 /// How far the probe went, from any zero; the force; the time, which may be missing.
 const COLUMNS: [Column; 3] = [
@@ -106,7 +107,7 @@ impl Curve {
                     return Err(Refusal::state(found, "give times that increase"));
                 }
             }
-            let most = depths.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let [_, most] = extremes(depths.iter().copied()).unwrap_or_default();
             let first = depths.first().copied().unwrap_or(most);
             let deep = most - WAY_BACK * (most - first);
             let last = depths.iter().rposition(|depth| *depth >= deep);

@@ -230,8 +230,8 @@ impl Triangulation<'_> {
         self.corners.len() - 1
     }
 
-    /// Corner by corner, since spade's bulk loading depends on a random order; its search for the place of each begins at a neighbour
-    /// of before.
+    /// Corner by corner, since spade's bulk loading depends on a random order. The search for a corner's place begins at one of its
+    /// neighbours in the last triangulation.
     fn delaunay(&self) -> Result<Delaunay, FemError> {
         let mut delaunay = Delaunay::new();
         let crossing = |corner: usize| flat(self.corners[corner], 0.0);
