@@ -101,12 +101,13 @@ impl Triangulation<'_> {
         for round in 0..SMOOTHINGS + REPAIRS {
             new.move_corners();
             new.connect()?;
-            let (angle, _) = new.flattest();
-            if round >= SMOOTHINGS && angle >= SMALLEST_ANGLE {
-                return Ok(new);
-            } else if round >= SMOOTHINGS {
-                new.repair()?;
+            if round < SMOOTHINGS {
+                continue;
             }
+            if new.flattest().0 >= SMALLEST_ANGLE {
+                return Ok(new);
+            }
+            new.repair()?;
         }
         let (angle, at) = new.flattest();
         Err(flat(at, angle))
@@ -128,12 +129,12 @@ impl Triangulation<'_> {
 
     /// The smallest angle of all, degrees, and its place.
     fn flattest(&self) -> (f64, Point) {
-        let sine = |t: &&[usize; 3]| smallest_sine(self.at(t));
-        let flattest = self
+        let sines = self
             .triangles
             .iter()
-            .min_by(|a, b| sine(a).total_cmp(&sine(b)));
-        let angle = |t: &[usize; 3]| (smallest_angle(self.at(t)), self.corners[t[0]]);
+            .map(|t| (smallest_sine(self.at(t)), t));
+        let flattest = sines.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        let angle = |(sine, t): (f64, &[usize; 3])| (degrees(sine), self.corners[t[0]]);
         flattest.map_or((180.0, Point::zeros()), angle)
     }
 
@@ -301,7 +302,7 @@ impl Triangulation<'_> {
             wanted.sort_by(|(a, p, _), (b, q, _)| b.total_cmp(a).then(place(p).cmp(&place(q))));
             let before = self.corners.len();
             for (_, point, near) in wanted {
-                let encloses = |(centre, r): &(Point, f64)| (centre - point).norm() < *r;
+                let encloses = |(centre, r): &(Point, f64)| (centre - point).norm_squared() < r * r;
                 if !self.within(point) || circles.iter().any(encloses) {
                     continue;
                 }

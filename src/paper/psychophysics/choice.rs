@@ -49,10 +49,16 @@ pub struct Perceived {
 impl Perceived {
     /// F = 2Φ(γ/√2) − 1, so that ½ + ½F is the paper's Figure 9.
     pub fn at_gamma(gamma: f64) -> Perceived {
-        Perceived {
-            share: libm::erf(0.5 * gamma),
-            missed: libm::erfc(0.5 * gamma),
-        }
+        let half = 0.5 * gamma;
+        // The smaller one, from which the other loses nothing.
+        let (share, missed) = if half < 0.5 {
+            let share = libm::erf(half);
+            (share, 1.0 - share)
+        } else {
+            let missed = libm::erfc(half);
+            (1.0 - missed, missed)
+        };
+        Perceived { share, missed }
     }
 
     /// The probability ½ + (½ − λ)F of a right answer.

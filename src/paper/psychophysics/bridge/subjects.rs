@@ -161,11 +161,13 @@ fn expectations(trials: f64, perceived: Perceived, lapse: f64, slope: f64) -> Re
         // Every answer is right, and no count has a deviance.
         return Ok(sums);
     }
+    let (log_right, log_wrong) = (libm::log(right), libm::log(wrong));
     for errors in 0..=trials as u64 {
         // By the wrong answers, whose probability keeps its digits where it is small.
         let weight = binomial::probability(errors, trials as u64, wrong)?;
         let count = Count::new(trials - errors as f64, trials);
-        let d = 2.0 * (count.saturated() - perceived.log_likelihood(count, lapse));
+        let log_likelihood = count.right * log_right + count.wrong * log_wrong;
+        let d = 2.0 * (count.saturated() - log_likelihood);
         let u = slope * (count.right / right - count.wrong / wrong);
         let terms = [d, d * d, u * u, u * u * (u * u), d * (u * u)];
         for (sum, term) in sums.iter_mut().zip(terms) {

@@ -3,6 +3,8 @@
 //! How far a subject swept is not known, and the level may count in part. With weight w the signal of the whole sweep is
 //! √(w² mean² + change²); w = 1 and w = 0 are the two conventions.
 
+use rayon::prelude::*;
+
 use super::common::Signals;
 use super::signals::{Signal, is_within};
 use super::subjects::by_subject;
@@ -41,14 +43,14 @@ pub fn weight_ranges(
     half_sweeps: &[f64],
     level: f64,
 ) -> Result<Vec<WeightRange>> {
-    let mut ranges = Vec::new();
-    for &half in half_sweeps {
+    let ranges = |&half: &f64| {
         let within: Vec<_> = signals.iter().map(|signal| signal.within(half)).collect();
-        for statistic in STATISTICS {
-            ranges.extend(weight_range(&within, observed, (half, statistic), level)?);
-        }
-    }
-    Ok(ranges)
+        STATISTICS.map(|statistic| weight_range(&within, observed, (half, statistic), level))
+    };
+    // All of them, so that the first error is the same for any number of threads.
+    let ranges: Vec<_> = half_sweeps.par_iter().map(ranges).collect();
+    let ranges = ranges.into_iter().flatten();
+    ranges.filter_map(Result::transpose).collect()
 }
 
 /// `None` without a difference of the normal force.
