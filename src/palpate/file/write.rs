@@ -36,10 +36,10 @@ pub fn write(path: &Path, text: &str) -> io::Result<()> {
     replace(path, text.as_bytes(), identity, rename)
 }
 
-/// Writes a file, as [`write`], where none is.
+/// Writes a file, as [`write()`], where none is.
 ///
 /// # Errors
-/// As [`write`]; or one is there, even if it came there while this one was written.
+/// As [`write()`]; or one is there, even if it came there while this one was written.
 ///
 /// Implements: CLI-235.
 pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
