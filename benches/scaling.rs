@@ -9,6 +9,7 @@ use palpate::chart::style::BLUE;
 use palpate::chart::{Line, Panel, chart};
 use palpate::fem::{Contact, Mesh, Model};
 use palpate::phantom::Phantom;
+use palpate::text::extremes;
 
 const RUNS: usize = 3;
 /// Mesh sizes of a model, m.
@@ -55,9 +56,8 @@ fn panel(what: &str, cost: &[(f64, f64)]) -> Panel {
         println!("{x:>10} {y:>10.4} s");
     }
     let range = |of: fn(&(f64, f64)) -> f64| {
-        let values = || logs.iter().map(of);
-        let least = values().fold(f64::INFINITY, f64::min);
-        [least.floor(), values().fold(least, f64::max).ceil()]
+        let [least, most] = extremes(logs.iter().map(of)).expect("points");
+        [least.floor(), most.ceil()]
     };
     let axes = [range(|point| point.0), range(|point| point.1)];
     let line = Line::new(BLUE, logs.clone()).dotted(3);
