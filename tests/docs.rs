@@ -5,7 +5,7 @@
 
 mod page;
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
@@ -225,7 +225,11 @@ fn commands_and_options_exist() {
             "docs/README.md does not link to {name}"
         );
     }
-    let mut seen = 0;
+    let (mut seen, mut helps) = (0, BTreeMap::new());
+    let mut help_of = |name: &str| -> String {
+        let help = || palpate(&format!("{name} --help"));
+        helps.entry(name.to_owned()).or_insert_with(help).clone()
+    };
     for page in pages_and_readme() {
         for command in page.mentions() {
             let name = command.split_whitespace().nth(1).unwrap_or_default();
@@ -233,11 +237,11 @@ fn commands_and_options_exist() {
                 continue;
             }
             assert!(names.contains(name), "{}: {command}", page.name);
-            let mut help = palpate(&format!("{name} --help"));
+            let mut help = help_of(name);
             // Of several actions each has its own options.
             if help.contains("\nCommands:\n") {
                 let action = command.split_whitespace().nth(2).unwrap_or_default();
-                help = palpate(&format!("{name} {action} --help"));
+                help = help_of(&format!("{name} {action}"));
             }
             let words = help.split(|c: char| !(c.is_alphanumeric() || c == '-'));
             for option in page::options(&command) {
