@@ -269,10 +269,11 @@ impl Triangulation<'_> {
         Ok(())
     }
 
-    /// The circle about a piece of a line in which no other corner may lie: centre and radius.
+    /// The circle about a piece of a line in which no other corner may lie: centre and square of the radius.
     fn circle(&self, segment: &Segment) -> (Point, f64) {
         let [a, b] = segment.ends.map(|end| self.corners[end]);
-        ((a + b) / 2.0, 0.5 * CLEAR * (a - b).norm())
+        let radius = 0.5 * CLEAR * (a - b).norm();
+        ((a + b) / 2.0, radius * radius)
     }
 
     /// Whether a point lies within the rectangle of all lines.
@@ -302,7 +303,7 @@ impl Triangulation<'_> {
             wanted.sort_by(|(a, p, _), (b, q, _)| b.total_cmp(a).then(place(p).cmp(&place(q))));
             let before = self.corners.len();
             for (_, point, near) in wanted {
-                let encloses = |(centre, r): &(Point, f64)| (centre - point).norm_squared() < r * r;
+                let encloses = |circle: &_| encloses(circle, point);
                 if !self.within(point) || circles.iter().any(encloses) {
                     continue;
                 }
@@ -337,12 +338,8 @@ impl Triangulation<'_> {
         let flat = corners.filter(|corners| smallest_angle(*corners) < SMALLEST_ANGLE);
         let centres: Vec<Point> = flat.map(|corners| circumcircle(corners).0).collect();
         for point in centres {
-            let encloses = |segment: &Segment| {
-                let (centre, radius) = self.circle(segment);
-                (centre - point).norm() < radius
-            };
-            let all = 0..self.segments.len();
-            let hit: Vec<usize> = all.filter(|&k| encloses(&self.segments[k])).collect();
+            let encloses = |&k: &usize| encloses(&self.circle(&self.segments[k]), point);
+            let hit: Vec<usize> = (0..self.segments.len()).filter(encloses).collect();
             let taken = |corner: &Point| (corner - point).norm() < 0.1 * self.size.at(point);
             if hit.is_empty() && self.within(point) && !self.corners.iter().any(taken) {
                 self.push(point, false);
@@ -434,6 +431,11 @@ fn triangles(delaunay: &Delaunay) -> Vec<[usize; 3]> {
     faces
         .map(|face| face.vertices().map(|v| v.index()))
         .collect()
+}
+
+/// Whether a point lies within a circle of [`Triangulation::circle`].
+fn encloses((centre, squared): &(Point, f64), point: Point) -> bool {
+    (centre - point).norm_squared() < *squared
 }
 
 /// Where to cut a line, from 0 to 1, so that its pieces are about as long as wanted: equal shares of ∫ ds/h.
