@@ -15,7 +15,7 @@ use super::progress::{resumed_bar, tell_large_mesh, tell_time};
 use super::solve::{TheoryArguments, phantom, tell_large_strain};
 use palpate::bank::{Bank, BankPlan, BankSolve, MESH_SIZE, Parameter};
 use palpate::decimal::{kpa, mm};
-use palpate::fem::Contact;
+use palpate::fem::{Contact, Model};
 use palpate::file::from_json;
 use palpate::force_map::ForceMap;
 use palpate::journal::Journal;
@@ -197,13 +197,13 @@ fn compute(
     finished: Taken,
     bar: &ProgressBar,
 ) -> Result<Vec<ForceMap>, CliError> {
-    let maps = |(number, finished): (usize, Option<Vec<ForceMap>>)| {
+    let maps_of = |last: &mut Option<Model>, (number, finished): (usize, Option<Vec<ForceMap>>)| {
         if let Some(maps) = finished {
             return Ok(maps);
         }
         let solve = number.checked_sub(1).map(|solve| &solves[solve]);
         let solved = match solve {
-            Some(solve) => plan.solve(solve),
+            Some(solve) => plan.solve(solve, last),
             None => plan.reference().map(|map| vec![map]),
         };
         let name = || name(phantom, solve.map(|solve| &solve.phantom));
@@ -215,7 +215,8 @@ fn compute(
         bar.inc(1);
         Ok(maps)
     };
-    let maps = finished.into_par_iter().enumerate().map(maps);
+    let maps = finished.into_par_iter().enumerate();
+    let maps = maps.map_init(|| None, maps_of);
     let maps = maps.collect::<Result<Vec<_>, CliError>>()?;
     Ok(maps.concat())
 }

@@ -63,7 +63,7 @@ fn solve(config: &Config, phantoms: &[Phantom]) -> Result<Theory, CliError> {
     bar.finish_and_clear();
     let shown = shown(phantoms);
     let deformed = deformed_mesh(&models[shown], &maps[shown]);
-    let leverage = poisson_leverage(config, &phantoms[0]);
+    let leverage = poisson_leverage(config, &models[0]);
     Ok(Theory {
         reference: maps.remove(0),
         maps,
@@ -75,7 +75,8 @@ fn solve(config: &Config, phantoms: &[Phantom]) -> Result<Theory, CliError> {
 /// d ln F_n / d ln ν of the normal force at the probe depth and x = 0.
 ///
 /// Implements: REP-090.
-fn poisson_leverage(config: &Config, phantom: &Phantom) -> Result<f64, FemError> {
+fn poisson_leverage(config: &Config, model: &Model) -> Result<f64, FemError> {
+    let phantom = model.phantom();
     let (depth, _) = probe_depth(&config.depths);
     let lateral = 0.0;
     let force = |factor: f64| {
@@ -87,7 +88,7 @@ fn poisson_leverage(config: &Config, phantom: &Phantom) -> Result<f64, FemError>
                 inclusion.material.poisson_ratio *= factor;
             }
         })?;
-        let model = Model::new(&changed, config.mesh.size_mm / 1e3, config.mesh.contact)?;
+        let model = model.with_phantom(&changed)?;
         Ok::<f64, FemError>(model.solve(Pose { depth, lateral })?.force.normal)
     };
     // Half of the way to ν = 0.5 at the most.

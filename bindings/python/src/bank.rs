@@ -104,8 +104,10 @@ fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
     let all = solves.len() + 1;
     let mut maps = vec![plan.reference().map_err(refused)?];
     tell(progress, 1, all)?;
+    let mut last = vec![None; rayon::current_num_threads()];
     for (number, few) in (0..).zip(solves.chunks(rayon::current_num_threads())) {
-        let found = few.par_iter().map(|solve| plan.solve(solve));
+        let found = few.par_iter().zip(&mut last);
+        let found = found.map(|(solve, last)| plan.solve(solve, last));
         let found: Vec<_> = found.collect::<Result<_, FemError>>().map_err(refused)?;
         maps.extend(found.into_iter().flatten());
         tell(

@@ -32,9 +32,9 @@ const BESIDE: f64 = 0.3e-3;
 /// let solves = plan.solves()?;
 /// // The inclusion at −2 mm is the mirror image of that at 2 mm.
 /// assert_eq!(solves.len(), 2);
-/// let mut maps = Vec::new();
+/// let (mut maps, mut last) = (Vec::new(), None);
 /// for solve in &solves {
-///     maps.extend(plan.solve(solve)?);
+///     maps.extend(plan.solve(solve, &mut last)?);
 /// }
 /// let bank = Bank::new(plan.reference()?, maps)?;
 /// assert_eq!(bank.axes()[0], [-2e-3, 0.0, 2e-3]);
@@ -193,14 +193,23 @@ impl BankPlan {
         model.map(&depths, &self.laterals, &|_| ())
     }
 
-    /// The map of one hypothesis, and that of its mirror image.
+    /// The map of one hypothesis, and that of its mirror image. `last` is the model of the one before, whose mesh serves again
+    /// where they differ in the modulus alone.
     ///
     /// # Errors
     /// As [`Model::sweep`].
     ///
     /// Implements: BNK-020.
-    pub fn solve(&self, solve: &BankSolve) -> Result<Vec<ForceMap>, FemError> {
-        let model = Model::new(&solve.phantom, self.mesh_size, self.contact)?;
+    pub fn solve(
+        &self,
+        solve: &BankSolve,
+        last: &mut Option<Model>,
+    ) -> Result<Vec<ForceMap>, FemError> {
+        let model = match last {
+            Some(last) => last.with_phantom(&solve.phantom)?,
+            None => Model::new(&solve.phantom, self.mesh_size, self.contact)?,
+        };
+        let model = last.insert(model);
         let map = match self.probe_depths[..] {
             [depth] => model.sweep(depth, &self.laterals)?,
             _ => model.map(&self.probe_depths, &self.laterals, &|_| ())?,
@@ -214,9 +223,9 @@ impl BankPlan {
     /// # Errors
     /// As [`BankPlan::solves`], [`BankPlan::reference`] and [`BankPlan::solve`].
     pub fn bank(&self) -> Result<Bank, FemError> {
-        let mut maps = Vec::new();
+        let (mut maps, mut last) = (Vec::new(), None);
         for solve in self.solves()? {
-            maps.extend(self.solve(&solve)?);
+            maps.extend(self.solve(&solve, &mut last)?);
         }
         Ok(Bank::new(self.reference()?, maps)?)
     }

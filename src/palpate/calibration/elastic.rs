@@ -49,19 +49,18 @@ impl Gel {
         let ratio = libm::log(FIRST_DEPTH) / f64::from(DEPTHS - 1);
         let depth = |k: i32| deepest * libm::exp(ratio * f64::from(k));
         let depths: Vec<f64> = (0..DEPTHS).rev().map(depth).collect();
-        let map = |phantom: &Phantom| {
-            let model = Model::new(phantom, asked.mesh_size, Contact::default())?;
-            model.map(&depths, &[asked.lateral], &|_| ())
-        };
+        let model = Model::new(phantom, asked.mesh_size, Contact::default())?;
+        let map = |model: &Model| model.map(&depths, &[asked.lateral], &|_| ());
         let logarithms = |map: &ForceMap| -> Vec<f64> {
             let forces = map.table().normal().values().iter();
             forces.map(|force| libm::log(*force)).collect()
         };
-        let own = map(phantom)?;
+        let own = map(&model)?;
         let mut exponents = Vec::new();
         for &layer in asked.layers {
             let changed = |factor: f64| -> Result<Vec<f64>, FemError> {
-                Ok(logarithms(&map(&stiffened(phantom, &[layer], &[factor])?)?))
+                let stiffened = stiffened(phantom, &[layer], &[factor])?;
+                Ok(logarithms(&map(&model.with_phantom(&stiffened)?)?))
             };
             let (less, more) = (changed(1.0 - CHANGE)?, changed(1.0 + CHANGE)?);
             let range = libm::log((1.0 + CHANGE) / (1.0 - CHANGE));

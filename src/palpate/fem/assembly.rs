@@ -55,17 +55,39 @@ impl StiffnessMatrix {
         let interior = order.iter().copied().map(&mut number).last();
         order.extend(&mesh.surface);
         let all = mesh.surface.iter().copied().map(number).last();
-        let unknowns = all.unwrap_or(0);
+        let free = |unknown: u32| (unknown != HELD).then_some(unknown as usize);
+        let nodes = mesh.surface.iter();
         let pattern = pattern(mesh, &order, &unknown);
+        let values = vec![0.0; pattern.row_idx().len()];
+        let matrix = StiffnessMatrix {
+            surface: nodes.flat_map(|&node| unknown[node].map(free)).collect(),
+            upper: SparseColMat::new(pattern, values),
+            unknown,
+            first_surface_unknown: interior.unwrap_or(0),
+            reaction: [0, 1].map(|_| vec![0.0; all.unwrap_or(0)]),
+        };
+        matrix.filled(mesh, phantom)
+    }
+
+    /// The stiffness of another phantom with this mesh.
+    ///
+    /// # Errors
+    /// As [`StiffnessMatrix::assemble`].
+    pub(super) fn filled(
+        mut self,
+        mesh: &Mesh,
+        phantom: &Phantom,
+    ) -> Result<StiffnessMatrix, FemError> {
+        let (pattern, mut values) = self.upper.into_parts();
         let (starts, rows) = (pattern.col_ptr(), pattern.row_idx());
-        let mut values = vec![0.0; rows.len()];
+        values.fill(0.0);
+        self.reaction.iter_mut().for_each(|of| of.fill(0.0));
         let rule = StiffnessRule::default();
         // From one metre to the probe's length; what is turned has its whole stiffness already.
         let length = match phantom.geometry() {
             Geometry::Plane => phantom.probe().length,
             Geometry::Axisymmetric => 1.0,
         };
-        let mut reaction = [vec![0.0; unknowns], vec![0.0; unknowns]];
         for (index, nodes) in mesh.elements().enumerate() {
             let positions = mesh.positions(nodes);
             let material = mesh.regions[index].material(phantom);
@@ -80,7 +102,7 @@ impl StiffnessMatrix {
                 );
                 Refusal::state(found, "")
             })?;
-            let row_of = |k: usize| unknown[nodes[k / 2] as usize][k % 2];
+            let row_of = |k: usize| self.unknown[nodes[k / 2] as usize][k % 2];
             for k in 0..2 * nodes.len() {
                 let column = row_of(k);
                 if column == HELD {
@@ -91,7 +113,7 @@ impl StiffnessMatrix {
                 for l in 0..2 * nodes.len() {
                     let value = length * stiffness[(l, k)];
                     match row_of(l) {
-                        HELD => reaction[l % 2][column as usize] += value,
+                        HELD => self.reaction[l % 2][column as usize] += value,
                         row if row <= column => {
                             values[start + rows.partition_point(|&above| above < row)] += value;
                         }
@@ -100,15 +122,8 @@ impl StiffnessMatrix {
                 }
             }
         }
-        let free = |unknown: u32| (unknown != HELD).then_some(unknown as usize);
-        let nodes = mesh.surface.iter();
-        Ok(StiffnessMatrix {
-            surface: nodes.flat_map(|&node| unknown[node].map(free)).collect(),
-            upper: SparseColMat::new(pattern, values),
-            unknown,
-            first_surface_unknown: interior.unwrap_or(0),
-            reaction,
-        })
+        self.upper = SparseColMat::new(pattern, values);
+        Ok(self)
     }
 
     /// Number of unknowns.

@@ -87,7 +87,21 @@ impl Factor {
     /// # Errors
     /// [`FemError::Refused`] if it is not positive definite in double precision, [`FemError::OutOfMemory`].
     pub fn new(matrix: &StiffnessMatrix) -> Result<Factor, FemError> {
-        let symbolic = eliminated(matrix.upper.symbolic())?;
+        Factor::of(Arc::new(eliminated(matrix.upper.symbolic())?), matrix)
+    }
+
+    /// The factor of another matrix with the same pattern.
+    ///
+    /// # Errors
+    /// As [`Factor::new`].
+    pub(super) fn again(&self, matrix: &StiffnessMatrix) -> Result<Factor, FemError> {
+        Factor::of(Arc::clone(&self.symbolic), matrix)
+    }
+
+    fn of(
+        symbolic: Arc<SymbolicCholesky<u32>>,
+        matrix: &StiffnessMatrix,
+    ) -> Result<Factor, FemError> {
         let mut values = vec![0.0; symbolic.len_val()];
         let mut memory =
             scratch(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default()))?;
@@ -106,7 +120,7 @@ impl Factor {
                 Refusal::state(found, "")
             })?;
         let mut factor = Factor {
-            symbolic: Arc::new(symbolic),
+            symbolic,
             values,
             surface: Mat::new(),
         };

@@ -86,6 +86,32 @@ impl Model {
         let mesh = Mesh::new(phantom, mesh_size)?;
         let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
         let factor = Factor::new(&matrix)?;
+        Model::of(phantom, (mesh_size, contact), (mesh, matrix, factor))
+    }
+
+    /// [`Model::new`] of another phantom at this mesh size and contact. Where the two differ in their materials alone, mesh, order
+    /// of elimination and pattern of the factor serve again.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    ///
+    /// Implements: FEM-084.
+    pub fn with_phantom(&self, phantom: &Phantom) -> Result<Model, FemError> {
+        let asked = (self.mesh_size, self.surface.contact);
+        if !phantom.is_meshed_as(&self.phantom) {
+            return Model::new(phantom, asked.0, asked.1);
+        }
+        let mesh = self.mesh.clone();
+        let matrix = self.matrix.clone().filled(&mesh, phantom)?;
+        let factor = self.factor.again(&matrix)?;
+        Model::of(phantom, asked, (mesh, matrix, factor))
+    }
+
+    fn of(
+        phantom: &Phantom,
+        (mesh_size, contact): (f64, Contact),
+        (mesh, matrix, factor): (Mesh, StiffnessMatrix, Factor),
+    ) -> Result<Model, FemError> {
         let compliance = factor.surface_compliance(&matrix)?;
         let surface = Surface::new(&mesh, compliance, phantom.probe(), contact);
         let size = SizeField::new(phantom, mesh_size);

@@ -397,6 +397,19 @@ impl Phantom {
         self.probe().friction == 0.0 && self.materials().all(Material::is_symmetric)
     }
 
+    /// Whether the phantoms differ in name and materials alone, such that they have the same mesh.
+    pub(crate) fn is_meshed_as(&self, other: &Phantom) -> bool {
+        let mut alike = self.clone();
+        alike.0.name.clone_from(&other.0.name);
+        for (layer, other) in alike.0.layers.iter_mut().zip(other.layers()) {
+            layer.material = other.material;
+        }
+        for (inclusion, other) in alike.0.inclusions.iter_mut().zip(other.inclusions()) {
+            inclusion.material = other.material;
+        }
+        alike == *other && self.is_symmetric() == other.is_symmetric()
+    }
+
     /// The number of each inclusion's mirror image; fewer numbers than inclusions where one has none.
     pub fn mirror_images(&self) -> Vec<usize> {
         let image = |inclusion: &Inclusion| {

@@ -2,10 +2,11 @@ use crate::fem::field::determinant;
 use crate::fem::{Contact, FemError, MESH_SIZE, Model, Pose, PoseSolution};
 use crate::force::Force;
 use crate::force_map::ForceMap;
-use crate::phantom::Phantom;
+use crate::phantom::tests::disc;
+use crate::phantom::{Phantom, PhantomParts};
 use palpate_asserts::assert_near;
 
-use super::{builtin, ellipse, finest, off_centre, polygon, pose};
+use super::{builtin, ellipse, finest, hard, off_centre, polygon, pose, with};
 
 fn coarse(name: &str, contact: Contact) -> Model {
     super::coarse(&builtin(name), contact)
@@ -351,6 +352,37 @@ fn the_vtu_file_holds_the_mesh_and_the_stresses() {
         assert!((s[0] + s[1] + s[2] + 3.0 * p).abs() <= 1e-9 * p.abs().max(1.0));
     }
     assert!(pressure.iter().copied().fold(0.0, f64::max) > 100.0);
+}
+
+// Verifies: FEM-084.
+#[test]
+fn a_model_made_from_another_has_the_bits_of_one_made_anew() {
+    let pair = with(vec![hard(-6.0, 3.0, disc(4.0)), hard(6.0, 3.0, disc(4.0))]);
+    let model = super::coarse(&pair, Contact::VerticalGap);
+    let changed = |change: fn(&mut PhantomParts)| pair.changed(change).unwrap();
+    let others = [
+        // Other materials, as before their own mirror images, and not.
+        changed(|parts| parts.layers[1].material.youngs_modulus *= 2.0),
+        changed(|parts| parts.inclusions[0].material.poisson_ratio = 0.3),
+        // Another mesh; another probe.
+        changed(|parts| parts.inclusions[0].depth += 1e-3),
+        changed(|parts| parts.layers[0].thickness *= 1.1),
+        changed(|parts| parts.probe.length *= 2.0),
+    ];
+    let poses = [pose(1e-3, -5e-3), pose(2e-3, 3e-3)];
+    let answers = |model: &Model| {
+        let (solutions, checks) = model.path(&poses).unwrap();
+        let mesh = (model.mesh().symmetric, model.mesh().nodes.clone());
+        (mesh, solutions, checks, model.phantom().clone())
+    };
+    for other in &others {
+        let made = model.with_phantom(other).unwrap();
+        assert_eq!(
+            answers(&made),
+            answers(&super::coarse(other, Contact::VerticalGap))
+        );
+        assert_ne!(answers(&made).1, answers(&model).1);
+    }
 }
 
 // Verifies: CON-010.
