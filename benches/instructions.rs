@@ -59,7 +59,7 @@ fn model_of_a_phantom(phantom: Phantom) -> Model {
 #[bench::coarse(model())]
 fn forces_at_three_poses(model: Model) -> ForceMap {
     black_box(&model)
-        .sweep(4e-3, &[0.0, 1e-3, 2e-3])
+        .sweep(&[4e-3], &[0.0, 1e-3, 2e-3])
         .expect("poses within the well")
 }
 

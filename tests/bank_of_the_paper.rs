@@ -46,7 +46,7 @@ fn map(x: f64, depth: f64, mesh_size: f64) -> ForceMap {
     });
     let phantom = phantom.unwrap();
     let model = Model::new(&phantom, mesh_size, Contact::default()).unwrap();
-    model.sweep(DEPTH, &laterals()).unwrap()
+    model.sweep(&[DEPTH], &laterals()).unwrap()
 }
 
 fn record(map: &ForceMap) -> Record {

@@ -56,7 +56,7 @@ fn without_friction(gel: &str, disc: &str, mesh_size: f64, step: usize) -> [f64;
     let (positions, theirs) = table(gel, disc);
     let model = Model::new(&phantom(disc, poisson_ratio), mesh_size, Contact::default()).unwrap();
     let laterals: Vec<f64> = positions.into_iter().step_by(step).collect();
-    let map = model.sweep(DEPTH, &laterals).unwrap();
+    let map = model.sweep(&[DEPTH], &laterals).unwrap();
     let row = map.table().row(DEPTH).unwrap();
     let ours = row
         .normal

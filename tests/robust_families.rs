@@ -52,10 +52,7 @@ fn laterals(step: f64) -> Vec<f64> {
 fn gel(change: fn(&mut PhantomParts), depths: &[f64]) -> Gel {
     DISCS.map(|disc| {
         let model = Model::new(&phantom(disc, change), 0.45e-3, Contact::default()).unwrap();
-        let map = match depths {
-            [depth] => model.sweep(*depth, &laterals(0.25e-3)),
-            _ => model.map(depths, &laterals(0.25e-3), &|_| ()),
-        };
+        let map = model.sweep(depths, &laterals(0.25e-3));
         map.unwrap().table().clone()
     })
 }

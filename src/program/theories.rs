@@ -81,11 +81,8 @@ fn poisson_leverage(config: &Config, model: &Model) -> Result<f64, FemError> {
     let lateral = 0.0;
     let force = |factor: f64| {
         let changed = phantom.changed(|parts| {
-            for layer in &mut parts.layers {
-                layer.material.poisson_ratio *= factor;
-            }
-            for inclusion in &mut parts.inclusions {
-                inclusion.material.poisson_ratio *= factor;
+            for material in parts.materials_mut() {
+                material.poisson_ratio *= factor;
             }
         })?;
         let model = model.with_phantom(&changed)?;

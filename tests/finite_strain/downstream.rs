@@ -83,7 +83,7 @@ fn a_run_and_a_study_compare_phantoms_of_one_theory() {
     for name in ["none", "6.6"] {
         let gel = super::phantom(name, 0.49);
         let model = Model::new(&gel, 2e-3, Contact::default()).unwrap();
-        let map = model.sweep(1e-3, &[0.0]).unwrap();
+        let map = model.sweep(&[1e-3], &[0.0]).unwrap();
         let expected = map.table().normal().row(0)[0];
         let mut quantities = results["quantities"].as_array().unwrap().iter();
         let force = quantities.find(|q| {

@@ -214,28 +214,4 @@ impl PlacePosterior {
         let [lower, upper] = [tail, 1.0 - tail].map(point);
         Ok(Bounds { lower, upper })
     }
-
-    /// The probability of the places that are more likely than `at`: `at` is in the credible region of a level if this is less.
-    ///
-    /// Implements: BNK-042.
-    pub fn more_likely(&self, at: [f64; 4]) -> f64 {
-        let cell = [0, 1, 2, 3].map(|axis: usize| self.axes[axis].cell(at[axis]));
-        let mut stride = 1;
-        let mut node = 0;
-        for (axis, (&cell, x)) in self.axes.iter().zip(cell.iter().zip(at)) {
-            let [from, to] = axis.ends(cell);
-            let share = if axis.is_free() {
-                (x - from) / (to - from)
-            } else {
-                0.0
-            };
-            let last = axis.nodes - 1;
-            node += stride * ((share * axis.nodes as f64) as usize).min(last);
-            stride *= axis.nodes;
-        }
-        let number = self.cells.iter().position(|of| *of == cell);
-        let own = number.map_or(0.0, |number| self.mass[number * self.per_cell() + node]);
-        let more = self.mass.iter().filter(|mass| **mass > own);
-        more.sum()
-    }
 }

@@ -210,10 +210,7 @@ impl BankPlan {
             None => Model::new(&solve.phantom, self.mesh_size, self.contact)?,
         };
         let model = last.insert(model);
-        let map = match self.probe_depths[..] {
-            [depth] => model.sweep(depth, &self.laterals)?,
-            _ => model.map(&self.probe_depths, &self.laterals, &|_| ())?,
-        };
+        let map = model.sweep(&self.probe_depths, &self.laterals)?;
         let image = solve.image.then(|| map.mirror_image()).transpose()?;
         Ok(std::iter::once(map).chain(image).collect())
     }

@@ -124,8 +124,7 @@ pub(super) fn stiffened(
             parts.layers[*layer].material.youngs_modulus *= factor;
         }
         if layers.is_empty() {
-            let layers = parts.layers.iter_mut().map(|of| &mut of.material);
-            let all = layers.chain(parts.inclusions.iter_mut().map(|of| &mut of.material));
+            let all = parts.materials_mut();
             all.for_each(|material| material.youngs_modulus *= factors[0]);
         }
     })

@@ -30,7 +30,7 @@ pub const RESIDUAL_LIMIT: f64 = 1e-8;
 /// Implements: FEM-006.
 #[derive(Debug, Clone)]
 pub struct Factor {
-    symbolic: Arc<SymbolicCholesky<u32>>,
+    pub(super) symbolic: Arc<SymbolicCholesky<u32>>,
     values: Vec<f64>,
     /// The corner of L over the surface unknowns.
     pub(super) surface: Mat<f64>,
@@ -90,15 +90,11 @@ impl Factor {
         Factor::of(Arc::new(eliminated(matrix.upper.symbolic())?), matrix)
     }
 
-    /// The factor of another matrix with the same pattern.
+    /// The factor of a matrix whose factor has this pattern.
     ///
     /// # Errors
     /// As [`Factor::new`].
-    pub(super) fn again(&self, matrix: &StiffnessMatrix) -> Result<Factor, FemError> {
-        Factor::of(Arc::clone(&self.symbolic), matrix)
-    }
-
-    fn of(
+    pub(super) fn of(
         symbolic: Arc<SymbolicCholesky<u32>>,
         matrix: &StiffnessMatrix,
     ) -> Result<Factor, FemError> {

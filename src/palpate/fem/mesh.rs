@@ -94,13 +94,12 @@ impl Mesh {
     /// The sizes of the elements, and about how many nodes they make.
     fn forecast(phantom: &Phantom, size: f64) -> Result<(SizeField, f64), FemError> {
         let asked = format!("mesh size {} mm", size * 1e3);
-        let is_right = size > 0.0 && size.is_finite();
         let wrong = Refusal::value(
             "mesh size",
             format!("{} mm", size * 1e3),
             "a finite number above 0",
         );
-        wrong.when(!is_right)?;
+        wrong.when(!(size > 0.0 && size.is_finite()))?;
         let field = SizeField::new(phantom, size);
         let nodes = field.expected_nodes();
         let found = format!(

@@ -83,10 +83,7 @@ impl Model {
     ///
     /// Implements: FIN-009.
     pub fn new(phantom: &Phantom, mesh_size: f64, contact: Contact) -> Result<Model, FemError> {
-        let mesh = Mesh::new(phantom, mesh_size)?;
-        let matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
-        let factor = Factor::new(&matrix)?;
-        Model::of(phantom, (mesh_size, contact), (mesh, matrix, factor))
+        Model::of(phantom, (mesh_size, contact), None)
     }
 
     /// [`Model::new`] of another phantom at this mesh size and contact. Where the two differ in their materials alone, mesh, order
@@ -97,21 +94,25 @@ impl Model {
     ///
     /// Implements: FEM-084.
     pub fn with_phantom(&self, phantom: &Phantom) -> Result<Model, FemError> {
-        let asked = (self.mesh_size, self.surface.contact);
-        if !phantom.is_meshed_as(&self.phantom) {
-            return Model::new(phantom, asked.0, asked.1);
-        }
-        let mesh = self.mesh.clone();
-        let matrix = self.matrix.clone().filled(&mesh, phantom)?;
-        let factor = self.factor.again(&matrix)?;
-        Model::of(phantom, asked, (mesh, matrix, factor))
+        let alike = phantom.is_meshed_as(&self.phantom).then_some(self);
+        Model::of(phantom, (self.mesh_size, self.surface.contact), alike)
     }
 
     fn of(
         phantom: &Phantom,
         (mesh_size, contact): (f64, Contact),
-        (mesh, matrix, factor): (Mesh, StiffnessMatrix, Factor),
+        alike: Option<&Model>,
     ) -> Result<Model, FemError> {
+        let (mesh, matrix, factor);
+        if let Some(alike) = alike {
+            mesh = alike.mesh.clone();
+            matrix = alike.matrix.clone().filled(&mesh, phantom)?;
+            factor = Factor::of(alike.factor.symbolic.clone(), &matrix)?;
+        } else {
+            mesh = Mesh::new(phantom, mesh_size)?;
+            matrix = StiffnessMatrix::assemble(&mesh, phantom)?;
+            factor = Factor::new(&matrix)?;
+        }
         let compliance = factor.surface_compliance(&matrix)?;
         let surface = Surface::new(&mesh, compliance, phantom.probe(), contact);
         let size = SizeField::new(phantom, mesh_size);
@@ -449,14 +450,17 @@ impl Model {
         Ok(checks)
     }
 
-    /// The force map of one depth over `laterals` (m, increasing), as [`Model::map`] but for the last digits: each position starts
-    /// the next, which takes a fifth of the time.
+    /// The force map over `depths` × `laterals` (m, both increasing), as [`Model::map`] but for the last digits of the forces at one
+    /// depth: each position starts the next, which takes a fifth of the time.
     ///
     /// # Errors
     /// As [`Model::map`].
     ///
     /// Implements: FEM-040.
-    pub fn sweep(&self, depth: f64, laterals: &[f64]) -> Result<ForceMap, FemError> {
+    pub fn sweep(&self, depths: &[f64], laterals: &[f64]) -> Result<ForceMap, FemError> {
+        let &[depth] = depths else {
+            return self.map(depths, laterals, &|_| ());
+        };
         self.check_poses(&[depth], laterals)?;
         let right = self.solved_laterals(laterals);
         let mut solutions: Vec<PoseSolution> = Vec::with_capacity(right.len());

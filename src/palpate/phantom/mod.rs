@@ -256,6 +256,14 @@ impl TryFrom<PhantomParts> for Phantom {
     }
 }
 
+impl PhantomParts {
+    /// What layers and inclusions are made of, in their order.
+    pub fn materials_mut(&mut self) -> impl Iterator<Item = &mut Material> {
+        let layers = self.layers.iter_mut().map(|layer| &mut layer.material);
+        layers.chain(self.inclusions.iter_mut().map(|of| &mut of.material))
+    }
+}
+
 impl From<Phantom> for PhantomParts {
     fn from(phantom: Phantom) -> PhantomParts {
         phantom.0
@@ -401,12 +409,9 @@ impl Phantom {
     pub(crate) fn is_meshed_as(&self, other: &Phantom) -> bool {
         let mut alike = self.clone();
         alike.0.name.clone_from(&other.0.name);
-        for (layer, other) in alike.0.layers.iter_mut().zip(other.layers()) {
-            layer.material = other.material;
-        }
-        for (inclusion, other) in alike.0.inclusions.iter_mut().zip(other.inclusions()) {
-            inclusion.material = other.material;
-        }
+        let own = alike.0.materials_mut();
+        own.zip(other.materials())
+            .for_each(|(own, other)| *own = *other);
         alike == *other && self.is_symmetric() == other.is_symmetric()
     }
 

@@ -162,8 +162,8 @@ const SUPPORTS: [fn(&mut PhantomParts); 2] = [
 /// A change of each uncertain quantity by a share.
 const CHANGES: [fn(&mut PhantomParts, f64); 5] = [
     |gel, by| {
-        let layers = gel.layers.iter_mut();
-        layers.for_each(|layer| layer.material.poisson_ratio *= 1.0 + by);
+        let all = gel.materials_mut();
+        all.for_each(|material| material.poisson_ratio *= 1.0 + by);
     },
     |gel, by| gel.well.width *= 1.0 + by,
     |gel, by| {
@@ -242,11 +242,7 @@ impl GelChanges {
         }));
         let solved = |phantom: &Phantom| -> Result<ForceTable, FemError> {
             let model = Model::new(phantom, mesh_size, Contact::default())?;
-            let map = match depths {
-                [depth] => model.sweep(*depth, &laterals)?,
-                _ => model.map(depths, &laterals, &|_| ())?,
-            };
-            Ok(map.table().clone())
+            Ok(model.sweep(depths, &laterals)?.table().clone())
         };
         let change = |(from, to, share): &Sides| {
             let (from, to) = rayon::join(|| solved(from), || solved(to));

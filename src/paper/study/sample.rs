@@ -188,7 +188,7 @@ impl<'a> Sampler<'a> {
             let solve = || {
                 let phantom = self.plan.changed(own, &values)?;
                 let model = Model::new(&phantom, mesh * self.plan.mesh_size, self.plan.contact)?;
-                let map = model.sweep(depth, &self.plan.laterals)?;
+                let map = model.sweep(&[depth], &self.plan.laterals)?;
                 Ok((map, phantom.inclusion_depth()))
             };
             let solved: Result<_, FemError> = solve();

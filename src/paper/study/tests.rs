@@ -349,7 +349,7 @@ fn the_medians_are_solved_on_three_meshes() {
     let sampler = Sampler::new(&plan).unwrap();
     for (sample, size) in [(0, 1.5e-3), (1, 2e-3), (2, 3e-3)] {
         let model = palpate::fem::Model::new(&phantom, size, plan.contact).unwrap();
-        let map = model.sweep(plan.probe_depth, &plan.laterals).unwrap();
+        let map = model.sweep(&[plan.probe_depth], &plan.laterals).unwrap();
         let found = sampler.sample(sample).unwrap();
         // 4/3 and 3/2 of a mesh size round.
         assert!((found[0] - map.table().normal().row(0)[0]).abs() < 1e-9);

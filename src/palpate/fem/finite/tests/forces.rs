@@ -112,7 +112,7 @@ fn a_map_says_its_law_and_is_symmetric_without_friction() {
     assert_eq!(row.lateral[0], -row.lateral[2]);
     assert_eq!(row.normal[0], row.normal[2]);
     // A sweep, where each position starts the next, has the same forces.
-    let sweep = model.sweep(2e-3, &laterals).unwrap();
+    let sweep = model.sweep(&[2e-3], &laterals).unwrap();
     let other = sweep.table().row(2e-3).unwrap();
     for k in 0..3 {
         assert_near(other.normal[k], row.normal[k], 1e-8);
