@@ -42,9 +42,9 @@ fn a_soak_says_its_seed_and_the_probability_of_a_false_failure() {
     assert_eq!(
         text(&output.stdout),
         format!(
-            "soak: 2 times 42 checks, seed {seed}\n\
+            "soak: 2 times 45 checks, seed {seed}\n\
              statistics: not run\nrates: not run\nprogram: not run\nfem: not run\nkernel: not run\n\
-             timing: not run\ntests: no test run given\nsoak: all passed; a detector without defect fails such a run with probability 1.92e-6 at most\n\
+             timing: not run\ntests: no test run given\nsoak: all passed; a detector without defect fails such a run with probability 1.98e-6 at most\n\
              dossier.html, evidence.json, requirements.csv and test-runs.csv in {}\n",
             folder.display()
         )
