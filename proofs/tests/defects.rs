@@ -43,7 +43,8 @@ impl Harnesses {
         let run = Command::new(env!("CARGO"))
             .current_dir(&self.0.root)
             .env("CARGO_TARGET_DIR", self.0.root.join("target"))
-            // Most of the time goes into building.
+            // Most of the time goes into building, again and again.
+            .env("CARGO_INCREMENTAL", "1")
             .env("CARGO_PROFILE_DEV_OPT_LEVEL", "1")
             .env("CARGO_PROFILE_DEV_DEBUG", "false")
             .env("RUST_BACKTRACE", "0")
