@@ -83,8 +83,20 @@ impl<'a> Suite<'a> {
         command
     }
 
+    /// How many tests the last call ran.
+    pub fn ran(&self) -> usize {
+        let junit = fs::read_to_string(self.junit()).unwrap();
+        let document = Document::parse(&junit).unwrap();
+        let tests = document.root_element().attribute("tests");
+        tests.expect("their number").parse().unwrap()
+    }
+
+    fn junit(&self) -> PathBuf {
+        self.target.join("nextest/ledger/junit.xml")
+    }
+
     fn first_failing(&self, command: &mut Command, planted: Option<usize>) -> Option<String> {
-        let path = self.target.join("nextest/ledger/junit.xml");
+        let path = self.junit();
         let _ = fs::remove_file(&path);
         let output = run(command, planted);
         // 100: a test failed.
