@@ -63,7 +63,7 @@ fn panel(what: &str, cost: &[(f64, f64)]) -> Panel {
     let line = Line::new(BLUE, logs.clone()).dotted(3);
     Panel {
         caption: vec![format!(
-            "Time grows with the {exponent:.2}th power of the {what}."
+            "Time grows as the {what} to the power {exponent:.2}."
         )],
         x_name: format!("log₁₀ of the {what}"),
         ..Panel::new("log₁₀ of the time (s)", axes, 200, vec![line])
