@@ -32,8 +32,16 @@ impl<'a> Suite<'a> {
         let config = ".config/nextest.toml";
         copy.write(config, (copy.read(config) + PROFILE).as_bytes());
         let target = copy.root.join("target");
-        // `cargo metadata` does not make it.
-        fs::create_dir_all(&target).unwrap();
+        let debug = target.join("debug");
+        if !debug.exists() {
+            fs::create_dir_all(&debug).unwrap();
+            // The registry's crates are as they were built beside this test.
+            let built = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("debug");
+            let folders = [".fingerprint", "build", "deps"].map(|name| built.join(name));
+            let mut cp = Command::new("cp");
+            let copied = cp.arg("-a").args(folders).arg(debug).status();
+            assert!(copied.unwrap().success(), "{cp:?}");
+        }
         Suite { copy, target }
     }
 
