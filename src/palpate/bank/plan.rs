@@ -205,6 +205,8 @@ impl BankPlan {
         solve: &BankSolve,
         last: &mut Option<Model>,
     ) -> Result<Vec<ForceMap>, FemError> {
+        // A model that does not serve again goes before the next comes.
+        last.take_if(|last| !solve.phantom.is_meshed_as(last.phantom()));
         let model = match last {
             Some(last) => last.with_phantom(&solve.phantom)?,
             None => Model::new(&solve.phantom, self.mesh_size, self.contact)?,

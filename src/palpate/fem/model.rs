@@ -450,8 +450,8 @@ impl Model {
         Ok(checks)
     }
 
-    /// The force map over `depths` × `laterals` (m, both increasing), as [`Model::map`] but for the last digits of the forces at one
-    /// depth: each position starts the next, which takes a fifth of the time.
+    /// [`Model::map`] without progress. At a single depth each position starts the next, which takes a fifth of the time and changes
+    /// the last digits of the forces.
     ///
     /// # Errors
     /// As [`Model::map`].

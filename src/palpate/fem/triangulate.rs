@@ -303,8 +303,7 @@ impl Triangulation<'_> {
             wanted.sort_by(|(a, p, _), (b, q, _)| b.total_cmp(a).then(place(p).cmp(&place(q))));
             let before = self.corners.len();
             for (_, point, near) in wanted {
-                let encloses = |circle: &_| encloses(circle, point);
-                if !self.within(point) || circles.iter().any(encloses) {
+                if !self.within(point) || circles.iter().any(|of| encloses(of, point)) {
                     continue;
                 }
                 let apart = APART * self.size.at(point);

@@ -361,7 +361,7 @@ fn a_model_made_from_another_has_the_bits_of_one_made_anew() {
     let model = super::coarse(&pair, Contact::VerticalGap);
     let changed = |change: fn(&mut PhantomParts)| pair.changed(change).unwrap();
     let others = [
-        // Other materials, as before their own mirror images, and not.
+        // Other materials: of inclusions that still mirror each other, and that no longer do.
         changed(|parts| parts.layers[1].material.youngs_modulus *= 2.0),
         changed(|parts| parts.inclusions[0].material.poisson_ratio = 0.3),
         // Another mesh; another probe.
