@@ -71,9 +71,6 @@ fn the_tests_find_the_defects_of_the_ledger() {
     let build = || suite.build().unwrap_or_else(|error| panic!("{error}"));
     let (mut switched, alone) = with_switches(&copy, &entries, build);
     println!("{} of {} are built alone", alone.len(), entries.len());
-    if report.lines.is_empty() {
-        report.begin();
-    }
     // What states the power comes first, and what is quick.
     switched.sort_by_key(|&number| !entries[number].is_drawn);
     for find in [by_own, by_others] {
@@ -216,28 +213,24 @@ struct Report {
 }
 
 impl Report {
-    /// Goes on with the lines of the same commit.
+    /// Goes on with the lines of the same commit, or begins.
     fn open() -> Report {
         let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("ledger.jsonl");
         let text = fs::read_to_string(&path).unwrap_or_default();
         // Half a line is one that was being written.
         let lines = text.lines().map(serde_json::from_str);
-        let mut lines: Vec<Value> = lines.flatten().collect();
-        let commit = commit();
-        if lines.first().is_none_or(|first| first["commit"] != *commit) {
-            lines.clear();
-        }
-        Report {
+        let mut report = Report {
             path,
-            commit,
-            lines,
+            commit: commit(),
+            lines: lines.flatten().collect(),
+        };
+        let first = report.lines.first();
+        if first.is_none_or(|first| first["commit"] != *report.commit) {
+            report.lines.clear();
+            File::create(&report.path).unwrap();
+            report.push(json!({"commit": report.commit}));
         }
-    }
-
-    /// No defect has been tried.
-    fn begin(&mut self) {
-        File::create(&self.path).unwrap();
-        self.push(json!({"commit": self.commit}));
+        report
     }
 
     fn push(&mut self, line: Value) {

@@ -39,8 +39,9 @@ fn our_oracle_passes_all_the_vectors_from_a_pipe_and_from_a_file() {
     ));
     let same = "the vectors of the folder are those of the program";
     assert_eq!(stdout(&judged), stdout(&read), "{same}");
-    let text = at("judge q.jsonl a.jsonl");
-    let text = stdout(&text);
+    let output = at("judge q.jsonl a.jsonl");
+    passes(&output);
+    let text = stdout(&output);
     let is_short = !text.contains("not right") && !text.contains("likely");
     assert!(is_short, "{text}");
     let [mut judged, mut piped] = [json_of(&judged), json_of(&piped)];
