@@ -10,6 +10,7 @@ mod bank;
 mod calibrate;
 mod comparison;
 pub mod config;
+mod deformed;
 mod demo;
 mod detect;
 mod devices;

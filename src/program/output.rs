@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 use std::fmt::Display;
-use std::io::{IsTerminal, Write};
+use std::io::{Error, ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -13,7 +13,6 @@ use serde::Serialize;
 use serde_json::Value;
 
 use super::CliError;
-use super::platform::is_closed_pipe;
 use palpate::fem::arithmetic;
 use palpate::file;
 use palpate::refusal::one_line;
@@ -130,8 +129,14 @@ pub fn print(text: &str) -> Result<(), CliError> {
     printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
+/// Whether a write failed because nobody reads the pipe any more.
+fn is_closed_pipe(error: &Error) -> bool {
+    // Windows has a second error for it, "pipe not connected".
+    error.kind() == ErrorKind::BrokenPipe || cfg!(windows) && error.raw_os_error() == Some(233)
+}
+
 /// How it went to write to standard output; a reader that closes the pipe is no error.
-pub(super) fn printed(written: std::io::Result<()>) -> Result<(), CliError> {
+pub(super) fn printed(written: Result<(), Error>) -> Result<(), CliError> {
     match written {
         Err(error) if !is_closed_pipe(&error) => {
             Err(CliError::Check(format!("standard output: {error}")))

@@ -1,6 +1,5 @@
-//! What differs between operating systems: the signals that end the program, the priority of the servo thread, a pipe that is closed.
+//! What differs between operating systems: the signals that end the program, the priority of the servo thread.
 
-use std::io::{Error, ErrorKind};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -14,12 +13,6 @@ pub(super) fn stop_on_signals() -> Result<Arc<AtomicBool>, CliError> {
     let stop = Arc::new(AtomicBool::new(false));
     system::set_on_signals(&stop)?;
     Ok(stop)
-}
-
-/// Whether a write failed because nobody reads the pipe any more.
-pub(super) fn is_closed_pipe(error: &Error) -> bool {
-    // Windows has a second error for it, "pipe not connected".
-    error.kind() == ErrorKind::BrokenPipe || cfg!(windows) && error.raw_os_error() == Some(233)
 }
 
 /// Makes the allocator keep memory of up to 64 MB that is given back. glibc gives back to the system what is more than twice the size of the

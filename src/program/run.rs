@@ -8,16 +8,17 @@ use rayon::prelude::*;
 
 use super::CliError;
 use super::config::Config;
+use super::deformed::{deformed_mesh, shown};
 use super::output::{make_folder, note, print, write};
 use super::progress::{bar, tell_large_mesh};
 use super::solve::{TheoryArguments, tell_large_strain};
 use super::theories;
 use palpate::csv::Layout;
 use palpate::fem::certify::certified_map;
-use palpate::fem::{FemError, Model, Pose};
+use palpate::fem::{FemError, Model};
 use palpate::file::read;
 use palpate::force_map::{ForceMap, ForceTable, Measurement, Source};
-use palpate::phantom::{Inclusion, Phantom};
+use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 use palpate::robust::{GelChanges, GelUncertainty};
 use palpate_paper::psychophysics::bridge::probe_depth;
@@ -148,23 +149,6 @@ fn solve_phantom(
     let map = certified_map(&model, depths, laterals, &|poses| bar.inc(poses as u64))?;
     let deformed = shown.then(|| deformed_mesh(&model, &map)).transpose()?;
     Ok((map, deformed))
-}
-
-/// The place of the phantom that the deformed mesh shows: that of the first inclusion, or the reference where there is none.
-pub fn shown(phantoms: &[Phantom]) -> usize {
-    usize::from(phantoms.len() > 1)
-}
-
-/// The mesh at the deepest pose, at the lateral position nearest to the middle of the first inclusion, or to x = 0.
-pub fn deformed_mesh(model: &Model, map: &ForceMap) -> Result<DeformedMesh, FemError> {
-    let depth = map.table().depths().iter().fold(0.0, |a: f64, &b| a.max(b));
-    let first = model.phantom().inclusions().first();
-    let [left, right, ..] = first.map_or([0.0; 4], Inclusion::extent);
-    let distance = |x: f64| (x - 0.5 * (left + right)).abs();
-    let laterals = map.table().laterals().iter().copied();
-    let nearest = laterals.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-    let lateral = nearest.unwrap_or(0.0);
-    DeformedMesh::solve(model, Pose { depth, lateral })
 }
 
 /// Writes all files and prints where they are.

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::CliError;
 use super::config::Config;
+use super::deformed::{deformed_mesh, shown};
 use super::progress::{bar, tell_time};
-use super::run::{deformed_mesh, shown};
 use palpate::fem::{FemError, Model, Pose};
 use palpate::phantom::{Material, Phantom, Strain};
 use palpate_paper::psychophysics::bridge::probe_depth;

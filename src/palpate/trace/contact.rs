@@ -1,6 +1,6 @@
 //! Whether a record is of a probe that touches the gel.
 
-use super::fit::Cause;
+use super::cause::Cause;
 use crate::force_map::ForceMap;
 
 /// A record that touches has such a level at least.

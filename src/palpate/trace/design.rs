@@ -1,58 +1,13 @@
 //! What a record may hold beside noise, sample by sample: the signal of the inclusion, and nuisances of unknown amplitude.
 
-use std::fmt;
-
-use serde::Serialize;
-
-use super::{Question, Record, refused};
+use super::question::{Question, Unknown};
+use super::{Record, refused};
 use crate::detect::DetectError;
 use crate::detect::nuisance::{DEPENDENT, Nuisances, Rank, SubspaceDetector};
 use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION, shallowest};
 use crate::refusal::Refusal;
 use crate::stats::error::check_positive;
-
-/// What may be unknown of a sweep.
-///
-/// Implements: TRC-060.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Unknown {
-    /// A constant force in each channel.
-    Offset,
-    /// A force in each channel that grows with the sample, from one end of the record to the other.
-    Drift,
-    /// The stiffness of the whole gel: the forces without inclusion times any number.
-    Gain,
-    /// The depth of the sweep, to first order about the one that is stated.
-    Depth,
-    /// The standard deviation of the noise.
-    Variance,
-}
-
-impl Unknown {
-    /// All of them.
-    pub const ALL: [Unknown; 5] = {
-        use Unknown::{Depth, Drift, Gain, Offset, Variance};
-        [Offset, Drift, Gain, Depth, Variance]
-    };
-}
-
-/// Its name on the command line and in JSON.
-impl fmt::Display for Unknown {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
-}
-
-/// Names with commas, or "nothing".
-pub fn in_words(unknown: &[Unknown]) -> String {
-    let names: Vec<_> = unknown.iter().map(Unknown::to_string).collect();
-    match names[..] {
-        [] => "nothing".into(),
-        _ => names.join(", "),
-    }
-}
 
 /// The parts of a record, all in the same unit and over the same samples: of each part the lateral samples, if the record has any, and
 /// then the normal ones.

@@ -1,69 +1,14 @@
-//! What is known of a record and asked of it, and the answer at the position that the maps are for.
+//! The answer at the position that the maps are for.
 
-use super::design::{Design, Unknown, squares};
-use super::fit::{Cause, Fit};
+use super::cause::Cause;
+use super::design::{Design, squares};
+use super::fit::Fit;
+use super::question::{Criterion, Question};
 use super::{Record, refused};
-use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector, SubspaceTest, Threshold};
+use crate::detect::nuisance::{Nuisances, SubspaceDetector, SubspaceTest, Threshold};
 use crate::detect::{Decision, DetectError, ErrorRates, map_threshold, posterior};
-use crate::force::Force;
 use crate::force_map::Hypotheses;
 use crate::refusal::Refusal;
-
-/// What the threshold must achieve.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Criterion {
-    /// The fewest errors for the prior.
-    MaximumAPosteriori,
-    /// At most this rate of misses, with the fewest false alarms.
-    NeymanPearsonMiss {
-        /// The largest rate of misses.
-        max_miss: f64,
-    },
-    /// At most this rate of false alarms, with the fewest misses.
-    NeymanPearsonFalseAlarm {
-        /// The largest rate of false alarms.
-        max_false_alarm: f64,
-    },
-}
-
-/// What is known of a record, and what is asked: does the gel under its sweep hold an inclusion?
-#[derive(Debug, Clone, Copy)]
-pub struct Question<'a> {
-    /// Depth of the sweep, m, where the samples have none of their own.
-    pub depth: f64,
-    /// The true depth is within so much of it, or of all depths of the samples alike, m, unless it is unknown; 0 if it is exact.
-    pub depth_tolerance: f64,
-    /// Whether the sensor was set to zero on the gel, so that its forces say nothing of contact.
-    pub is_zeroed: bool,
-    /// What is not known of the sweep.
-    pub unknown: &'a [Unknown],
-    /// The noise on its forces.
-    pub noise: Noise,
-    /// What the threshold must achieve.
-    pub criterion: Criterion,
-    /// Pr(H = 1) before the sweep.
-    pub prior_h1: f64,
-}
-
-/// What is known of the noise.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Noise {
-    /// Standard deviation of a sample of either force, N; none if it is to be estimated from the record.
-    pub sd: Option<Force<f64>>,
-    /// Which samples are independent.
-    pub correlation: Correlation,
-}
-
-/// How far apart two samples are whose noise is independent.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Correlation {
-    /// The noise is white: any two.
-    None,
-    /// To be estimated from the record.
-    OfRecord,
-    /// So many samples count as one, as estimated from a blank sweep.
-    Known(f64),
-}
 
 /// The answer at the position that the maps are for.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,18 +32,6 @@ pub struct Judgement {
 }
 
 impl Question<'_> {
-    pub(crate) fn is_unknown(&self, what: Unknown) -> bool {
-        self.unknown.contains(&what)
-    }
-
-    pub(crate) fn noise_level(&self) -> NoiseLevel {
-        if self.is_unknown(Unknown::Variance) {
-            NoiseLevel::Unknown
-        } else {
-            NoiseLevel::Known
-        }
-    }
-
     /// The parts of a design over the noise of a sample, and how well they fit.
     pub(crate) fn fitted(&self, design: &Design) -> Result<(Design, Fit), DetectError> {
         let noise_sd = match self.noise.sd {

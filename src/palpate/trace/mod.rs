@@ -3,10 +3,12 @@
 //! | file | content |
 //! |---|---|
 //! | `mod.rs` | the trace, its positions, and the forces that a map expects there |
+//! | `question.rs` | what is known of the record, and asked of it |
 //! | `design.rs` | what the record may hold: signal, nuisances |
 //! | `contact.rs` | whether the probe touches |
-//! | `fit.rs` | whether it fits, and the likeliest cause if not |
-//! | `judge.rs` | what is known, what is asked, and the answer at a known position |
+//! | `fit.rs` | whether it fits |
+//! | `cause.rs` | why it cannot be judged |
+//! | `judge.rs` | the answer at a known position |
 //! | `path.rs` | records whose samples have depths of their own |
 //! | `live.rs` | samples that come line by line |
 //!
@@ -50,21 +52,25 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod cause;
 pub(crate) mod contact;
 pub(crate) mod design;
 mod fit;
 mod judge;
 mod live;
 mod path;
+mod question;
 #[cfg(test)]
 mod tests;
 
 use std::path::Path;
 
-pub use design::{Unknown, gammas_along, in_words, nuisances};
-pub use fit::{Cause, Fit, MISFIT_RATE, reasons};
-pub use judge::{Correlation, Criterion, Judgement, Noise, Question};
+pub use cause::{Cause, reasons};
+pub use design::{gammas_along, nuisances};
+pub use fit::{Fit, MISFIT_RATE};
+pub use judge::Judgement;
 pub use live::{LiveSample, LiveSamples};
+pub use question::{Correlation, Criterion, Noise, Question, Unknown, in_words};
 
 use crate::csv::{Column, Layout, Rows};
 use crate::decimal::mm;

@@ -1,6 +1,7 @@
 //! The likelihood of right answers in pairs: an answer is right because the difference was perceived, or
 //! by a guess, and a share of lapses is wrong whatever was felt.
 
+use super::counts::Condition;
 use super::search::change;
 
 /// Right answers and pairs at one inclusion.
@@ -17,6 +18,12 @@ impl Count {
     pub fn new(right: f64, trials: f64) -> Count {
         let wrong = trials - right;
         Count { right, wrong }
+    }
+
+    /// Of all subjects under a condition together, at the inclusion in `column`.
+    pub fn pooled(condition: &Condition, column: usize) -> Count {
+        let (correct, trials) = condition.pooled(column);
+        Count::new(correct as f64, trials as f64)
     }
 
     /// The pairs.

@@ -5,7 +5,8 @@
 //! | `plan.rs` | which pair when: random, from a seed |
 //! | `experiment.rs` | one subject's experiment and the answers so far |
 //! | `observer.rs` | one sample played through device and servo, as it was felt; the ideal observer, who decides by Θ |
-//! | `table.rs`, `table1.csv` | counts of right answers: Table 1 and files of its form |
+//! | `counts.rs` | right answers of subjects to inclusions |
+//! | `table.rs`, `table1.csv` | tables of them: Table 1 and files of its form |
 //! | `trials.rs` | files with a row for each trial |
 //! | `analysis.rs` | everything that the counts say by themselves, from the files below |
 //! | `rates.rs` | shares, intervals, γ |
@@ -33,6 +34,7 @@ mod beta_binomial;
 pub mod bridge;
 mod choice;
 mod conditions;
+mod counts;
 mod dispersion;
 mod experiment;
 pub mod noise;
@@ -49,6 +51,7 @@ mod trials;
 pub use analysis::{Analysis, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis, analyse};
 pub use beta_binomial::BetaBinomial;
 pub use conditions::{ConditionComparison, Difference, InclusionDifference};
+pub use counts::{Column, Condition, MOST_TRIALS, Subject};
 pub use experiment::{Answer, Experiment, Setup};
 pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};
 pub use observer::{Felt, IdealObserver, present};
@@ -56,7 +59,7 @@ pub use palpate::stats::dispersion::{Dispersion, dispersion};
 pub use plan::{Interval, Trial, plan};
 pub use psychometric::{Parameter, Psychometric};
 pub use rates::{Bounds, CONFIDENCE, Clustered, GammaEstimate, OpenBounds, Rate};
-pub use table::{AnswerTable, Column, Condition, FEM_PLAYBACK, MOST_TRIALS, Subject};
+pub use table::{AnswerTable, FEM_PLAYBACK};
 
 use palpate::refusal::Refusal;
 

@@ -74,7 +74,9 @@ pub fn psychometric(
     let model = Model {
         midpoints: [first - SPANS * span, last + SPANS * span],
         log_spreads: SPREADS.map(|share| libm::log(share * span)),
-        counts: (0..depths.len()).map(|j| condition.count(j)).collect(),
+        counts: (0..depths.len())
+            .map(|j| Count::pooled(condition, j))
+            .collect(),
         depths,
     };
     model.fit(dispersion).map(Some)

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::table::{Column, MOST_TRIALS, Subject, column, plain, refused};
+use super::counts::{Column, MOST_TRIALS, Subject, column, plain, refused};
 use palpate::csv::{counted, split};
 use palpate::refusal::Refusal;
 

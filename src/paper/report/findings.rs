@@ -3,8 +3,9 @@
 use serde::Serialize;
 
 use super::comparison::{self, Comparison};
+use super::gamma::gamma;
 use super::inputs;
-use super::maps::{MapFindings, ReferenceFindings, gamma, of_maps, of_reference};
+use super::maps::{MapFindings, ReferenceFindings, of_maps, of_reference};
 use super::people::bridge_to;
 use super::text::{millimetres, name_of_map};
 use super::theories::{self, TheoryFindings};

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::maps::gamma;
+use super::gamma::gamma;
 use palpate::force::Force;
 use palpate::force_map::ForceMap;
 use palpate::simulation::{Hand, Motion, Path, Sensor, SimulatedRecord, Simulation};

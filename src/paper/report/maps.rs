@@ -2,14 +2,15 @@
 
 use serde::Serialize;
 
+use super::gamma::{GammaByChannel, gamma};
 use super::hand::{GammaOfHand, HandPath};
 use super::nuisances::GammaLeft;
 use super::quality::{Quality, warnings};
 use super::text::name_of_map;
 use super::{Settings, paper};
 use palpate::detect::{
-    DetectError, ErrorRates, MatchedFilter, error_rates, map_threshold,
-    neyman_pearson_false_alarm_threshold, neyman_pearson_miss_threshold, two_afc,
+    DetectError, ErrorRates, error_rates, map_threshold, neyman_pearson_false_alarm_threshold,
+    neyman_pearson_miss_threshold, two_afc,
 };
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, SAME_POSITION, peak};
@@ -101,17 +102,6 @@ pub struct Peak {
     pub force_n: f64,
     /// The lateral position, m; of mirror images the one with x ≥ 0.
     pub lateral_m: f64,
-}
-
-/// γ with both channels and with each alone.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct GammaByChannel {
-    /// Both.
-    pub both: f64,
-    /// The normal force alone.
-    pub normal: f64,
-    /// The lateral force alone.
-    pub lateral: f64,
 }
 
 /// A threshold with its error rates.
@@ -216,11 +206,4 @@ fn judged(
         lateral: gamma(lateral, &zeros)?,
     };
     Ok((gamma, Detection::new(gamma.both, settings)?))
-}
-
-/// γ of lateral and normal forces in noise of the same standard deviation.
-pub(super) fn gamma(lateral: &[f64], normal: &[f64], noise_sd: f64) -> Result<f64, DetectError> {
-    let template = Force { lateral, normal };
-    let noise_sd = Force::new(noise_sd, noise_sd);
-    MatchedFilter::new(template, noise_sd).map(|filter| filter.gamma())
 }

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `paper.rs` | the numbers that the paper prints |
 //! | `maps.rs` | what each map says: signal, signal-to-noise ratios, thresholds |
+//! | `gamma.rs` | γ of the matched filter |
 //! | `hand.rs` | what is left of γ where a hand tracks the path |
 //! | `nuisances.rs` | what is left of γ where more is unknown than the noise |
 //! | `findings.rs` | what the run found, all together |
@@ -51,6 +52,7 @@
 mod comparison;
 mod figures;
 mod findings;
+mod gamma;
 mod hand;
 pub mod html;
 mod inputs;
@@ -68,9 +70,10 @@ mod theories;
 pub use comparison::{Comparison, Value};
 pub use figures::figures;
 pub use findings::{Findings, findings};
+pub use gamma::GammaByChannel;
 pub use hand::GammaOfHand;
 pub use html::html;
-pub use maps::{Detection, GammaByChannel, MapFindings, Peak, ReferenceFindings, Threshold};
+pub use maps::{Detection, MapFindings, Peak, ReferenceFindings, Threshold};
 pub use nuisances::{GammaBeside, GammaLeft};
 use people::normal_approximation;
 pub use quality::Quality;

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::GammaByChannel;
+use super::gamma::GammaByChannel;
 use palpate::detect::nuisance::Nuisances;
 use palpate::force::Force;
 use palpate::force_map::ForceMap;

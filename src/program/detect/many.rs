@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 
 use super::arguments::AnswerFormat;
-use super::robust::{Asked, Detector, tell_glitches};
+use super::records::{Asked, Detector, tell_glitches};
 use crate::output::{Envelope, note, print, quoted};
 use crate::progress::bar;
 use crate::{CliError, error::refuse};

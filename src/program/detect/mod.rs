@@ -2,6 +2,7 @@
 
 pub mod arguments;
 mod many;
+mod records;
 mod robust;
 
 use std::fmt::Display;

@@ -1,30 +1,21 @@
 //! `palpate detect` with the robust model, which is the default.
 
 use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
-use std::path::{Path, PathBuf};
-
-use serde_json::json;
+use std::path::PathBuf;
 
 use super::arguments::{AnswerFormat, ModelName};
-use super::{DetectArguments, TwoMaps, Warnings, asked, check_depths, many, tell, trimmed};
+use super::records::{Asked, Between, tell_glitches};
+use super::{DetectArguments, TwoMaps, Warnings, many, tell};
 use crate::CliError;
 use crate::error::refuse;
 use crate::numbers::for_each;
-use crate::output::{note, write};
+use crate::output::write;
 use palpate::bank::Bank;
 use palpate::chart::explanation_figure;
 use palpate::csv::Layout;
 use palpate::detect::Decision;
-use palpate::force_map::{ForceMap, Hypotheses};
-use palpate::phantom::Phantom;
-use palpate::refusal::Refusal;
-use palpate::robust::{
-    BankHypotheses, GelChanges, GelUncertainty, Part, RobustAnswer, RobustDetector, RobustPlace,
-    RobustQuestion, RobustSweep,
-};
-use palpate::rows::Rows;
-use palpate::trace::{Correlation, Record, reasons};
+use palpate::robust::{Part, RobustAnswer, RobustQuestion};
+use palpate::trace::{Correlation, reasons};
 
 /// Refuses options of the other model.
 ///
@@ -136,14 +127,6 @@ fn one(asked: Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
     tell(arguments, verdict, &conclusion(&answer), rows)
 }
 
-/// Implements: ROB-002.
-pub fn tell_glitches(file: &str, replaced: usize) {
-    if replaced > 0 {
-        let text = format!("samples replaced as glitches: {replaced}");
-        note(file, &text);
-    }
-}
-
 /// What is known of each record.
 fn question<'a>(
     arguments: &DetectArguments,
@@ -164,197 +147,6 @@ fn question<'a>(
         prior_h1: arguments.criterion.prior_h1,
         sure: arguments.model.sure.unwrap_or(default.sure),
     })
-}
-
-/// The forces to compare records with.
-enum Between<'a> {
-    /// Those of two maps, the first of which is also here.
-    Maps(Hypotheses<'a>, &'a ForceMap),
-    /// Those of a bank, and the prior of each of its maps.
-    Bank(&'a Bank, Option<&'a [f64]>),
-}
-
-impl Between<'_> {
-    /// The depth of a sweep for which none is given, m: the parser asks for one beside maps.
-    fn depth(&self) -> f64 {
-        match self {
-            Between::Maps(..) => 0.0,
-            Between::Bank(bank, _) => bank.depth(),
-        }
-    }
-}
-
-/// What is asked of each record.
-pub struct Asked<'a> {
-    pub arguments: &'a DetectArguments,
-    layout: &'a Layout,
-    question: RobustQuestion<'a>,
-    between: Between<'a>,
-    warnings: Warnings,
-    /// Of each sweep of a place, m.
-    depths: Vec<f64>,
-    references: Vec<Record>,
-    /// The gels beside that of the maps, by the bits of the depth; none of the depths of samples.
-    changes: BTreeMap<Option<u64>, Option<GelChanges>>,
-}
-
-impl<'a> Asked<'a> {
-    /// The passes of all records of these traces, whose notes are printed.
-    fn read_all(&self, traces: &[PathBuf]) -> Result<Vec<Record>, CliError> {
-        let passes = traces.iter().map(|path| {
-            let (passes, notes) = self.read(path)?;
-            notes.iter().for_each(|text| note(passes[0].file(), text));
-            Ok(passes)
-        });
-        let passes = passes.collect::<Result<Vec<_>, CliError>>()?;
-        Ok(passes.into_iter().flatten().collect())
-    }
-
-    /// The same with the reference sweeps, and the gels beside that of the maps under the `records`.
-    ///
-    /// Implements: ROB-080.
-    pub fn with_gels<'r>(
-        mut self,
-        records: impl Iterator<Item = &'r Record>,
-    ) -> Result<Asked<'a>, CliError> {
-        let model = &self.arguments.model;
-        let references = self.read_all(&model.reference_sweeps)?;
-        let file = model.gel_uncertainty.as_ref();
-        let uncertainty = file.map(|file| GelUncertainty::read(file)).transpose()?;
-        let uncertainty = uncertainty.unwrap_or_default().beside(self.question.known);
-        let reference = self.reference();
-        let name = reference.phantom().map_or("", Phantom::name);
-        let mut all: Vec<&Record> = records.collect();
-        all.extend(&references);
-        let (own, even): (Vec<_>, Vec<_>) =
-            (all.into_iter()).partition(|record| record.depths().is_some());
-        for &depth in self.depths.iter().filter(|_| !even.is_empty()) {
-            self.bank().map_or(Ok(()), |bank| bank.check_depth(depth))?;
-            if let Entry::Vacant(entry) = self.changes.entry(Some(depth.to_bits())) {
-                let found = GelChanges::new(reference, depth, &uncertainty);
-                entry.insert(found.map_err(CliError::fem(name))?);
-            }
-        }
-        if !own.is_empty() {
-            let found = GelChanges::along(reference, &own, &uncertainty);
-            self.changes
-                .insert(None, found.map_err(CliError::fem(name))?);
-        }
-        self.references = references;
-        Ok(self)
-    }
-
-    /// The map without an inclusion.
-    fn reference(&self) -> &'a ForceMap {
-        match self.between {
-            Between::Maps(_, reference) => reference,
-            Between::Bank(bank, _) => bank.reference(),
-        }
-    }
-
-    /// The bank, if there is one.
-    pub fn bank(&self) -> Option<&'a Bank> {
-        match self.between {
-            Between::Maps(..) => None,
-            Between::Bank(bank, _) => Some(bank),
-        }
-    }
-
-    /// Reads the passes of a record, without what is outside the maps if --trim is given.
-    ///
-    /// Implements: ROB-083.
-    pub(super) fn read(&self, path: &Path) -> Result<(Vec<Record>, Vec<String>), CliError> {
-        let record = super::read(self.arguments, self.layout, path)?;
-        check_depths(self.arguments, &record, self.bank())?;
-        let (have_lateral, table) = match self.between {
-            Between::Maps(hypotheses, map) => (hypotheses.have_lateral(), map.table()),
-            Between::Bank(bank, _) => (true, bank.base()),
-        };
-        let (record, mut notes) = trimmed(self.arguments, record, table, have_lateral)?;
-        let (passes, left_out) = self.question.passes(&record, self.reference());
-        if left_out > 0 {
-            let count = record.positions().len();
-            notes.push(format!(
-                "{left_out} of {count} samples left out: their passes are too short"
-            ));
-        }
-        Ok((passes, notes))
-    }
-
-    /// The sweeps of a place, and behind them the reference sweeps, at the first depth.
-    pub fn sweeps<'r>(&'r self, records: &'r [Record]) -> Vec<RobustSweep<'r>> {
-        let all = records.iter().chain(&self.references).enumerate();
-        let sweep = |(number, record)| {
-            let depth = *self.depths.get(number).unwrap_or(&self.depths[0]);
-            RobustSweep {
-                record,
-                depth,
-                changes: self.changes(record, depth),
-                is_reference: number >= records.len(),
-            }
-        };
-        all.map(sweep).collect()
-    }
-
-    /// The gels beside that of the maps under a record at a depth, or at its own depths.
-    fn changes(&self, record: &Record, depth: f64) -> Option<&GelChanges> {
-        let key = record.depths().is_none().then_some(depth.to_bits());
-        self.changes.get(&key)?.as_ref()
-    }
-
-    /// The detector for records over the positions of these sweeps.
-    pub fn detector(&self, sweeps: &[RobustSweep<'_>]) -> Result<Detector<'_>, Refusal> {
-        Ok(match &self.between {
-            Between::Maps(hypotheses, _) => {
-                Detector::Maps(self.question.detector(*hypotheses, sweeps)?)
-            }
-            Between::Bank(bank, prior) => {
-                let (detector, of) = self.question.bank_detector(bank, *prior, sweeps)?;
-                Detector::Bank(detector, of)
-            }
-        })
-    }
-
-    /// What was asked of the records of these traces, and the `answer`.
-    pub fn rows(&self, traces: &[PathBuf], records: &[Record], answer: Rows) -> Rows {
-        let mut rows = asked(self.arguments, traces, &self.depths, records);
-        let files = self.arguments.model.reference_sweeps.iter();
-        let files: Vec<_> = files.map(|file| file.display().to_string()).collect();
-        rows.value("reference_sweeps", files);
-        rows.value("known", json!(self.question.known));
-        rows.value("sure", self.question.sure);
-        rows.value("zeroed", self.question.is_zeroed);
-        rows.append(answer);
-        rows.value("warnings", self.warnings.0.clone());
-        rows
-    }
-}
-
-/// The detector of the inclusion of a map, or of any of a bank.
-pub enum Detector<'a> {
-    Maps(RobustDetector<'a>),
-    Bank(RobustDetector<'a>, BankHypotheses<'a>),
-}
-
-impl Detector<'_> {
-    /// What these sweeps say, and by a bank where the inclusion lies.
-    pub fn judge(
-        &self,
-        sweeps: &[RobustSweep<'_>],
-    ) -> Result<(RobustAnswer, Option<RobustPlace>), Refusal> {
-        let (Detector::Maps(detector) | Detector::Bank(detector, _)) = self;
-        let forces: Vec<_> = sweeps.iter().map(|sweep| sweep.record.forces()).collect();
-        let answer = detector.judge(&forces).map_err(|refusal| {
-            let mut files: Vec<_> = sweeps.iter().map(|sweep| sweep.record.file()).collect();
-            files.dedup();
-            refusal.in_file(files.join(", "))
-        })?;
-        let place = match self {
-            Detector::Maps(_) => None,
-            Detector::Bank(_, hypotheses) => Some(hypotheses.place(&answer)),
-        };
-        Ok((answer, place))
-    }
 }
 
 /// The depth of each of so many sweeps, m.

@@ -3,12 +3,14 @@
 //! | file | content |
 //! |---|---|
 //! | `mod.rs` | the device as the loop sees it |
-//! | `list.rs` | which devices there are, which profile each fits, and why one can not be opened |
+//! | `list.rs` | which devices there are, and why one can not be opened |
+//! | `profile.rs` | what a device is, by its report descriptor |
 //! | `choose.rs` | the device that is asked for |
 //! | `system.rs` | what differs between operating systems |
 
 mod choose;
 mod list;
+mod profile;
 mod system;
 #[cfg(test)]
 mod tests;
@@ -21,7 +23,8 @@ use std::time::{Duration, Instant};
 use hidapi::HidError;
 
 pub use choose::Wanted;
-pub use list::{Identity, Listed, Profile, list, no_permission, udev_rule};
+pub use list::{Identity, Listed, list, no_permission, udev_rule};
+pub use profile::Profile;
 
 use super::device::pass_over;
 use super::{

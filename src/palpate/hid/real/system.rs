@@ -4,7 +4,7 @@ use std::io;
 
 use hidapi::{DeviceInfo, HidApi};
 
-use super::Profile;
+use super::profile::Profile;
 
 /// The profile that a device fits, by the report descriptor, which Linux shows also to those who may not open the device.
 #[cfg(target_os = "linux")]

@@ -71,7 +71,10 @@ impl Observations {
             columns.iter().map(count).collect()
         });
         Ok(Observations {
-            pooled: columns.iter().map(|&j| condition.count(j)).collect(),
+            pooled: columns
+                .iter()
+                .map(|&j| Count::pooled(condition, j))
+                .collect(),
             subjects: subjects.collect(),
             dispersion: Overdispersion::new(condition, inclusions)?,
         })
