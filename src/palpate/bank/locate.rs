@@ -13,7 +13,7 @@ use crate::force_map::ForceMap;
 use crate::refusal::Refusal;
 use crate::text::extremes;
 use crate::trace::contact::{is_narrow, radius};
-use crate::trace::design::{Design, difference, expected, squares, whitened};
+use crate::trace::design::{Design, difference, expected, squares};
 use crate::trace::{Cause, Criterion, Fit, Question, Record, refused};
 
 /// A search for the inclusion of a bank in records.
@@ -131,7 +131,7 @@ impl BankSearch<'_> {
         noise_sd: Force<f64>,
         level: NoiseLevel,
     ) -> Result<BankDetector, Refusal> {
-        let template = |signal: &Vec<f64>| whitened(signal, white.samples, noise_sd);
+        let template = |signal: &Vec<f64>| white.over_noise(signal, noise_sd);
         let uniform = vec![1.0 / signals.len() as f64; signals.len()];
         let detector = BankDetector::new(
             self.bank.axes(),

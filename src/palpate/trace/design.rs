@@ -95,10 +95,7 @@ impl Design {
     ///
     /// Implements: TRC-086.
     pub fn whitened(&self, noise_sd: Force<f64>) -> Design {
-        let of = |part: &[f64]| match &self.depth_noise[..] {
-            [] => whitened(part, self.samples, noise_sd),
-            beside => whitened_beside(part, self.samples, noise_sd, beside),
-        };
+        let of = |part: &[f64]| self.over_noise(part, noise_sd);
         let all = |parts: &[Vec<f64>]| parts.iter().map(|part| of(part)).collect();
         Design {
             samples: self.samples,
@@ -108,6 +105,16 @@ impl Design {
             nuisances: all(&self.nuisances),
             depth_errors: all(&self.depth_errors),
             depth_noise: self.depth_noise.clone(),
+        }
+    }
+
+    /// A part, N, over the standard deviations of the noise, or over the covariance as in [`Design::whitened`].
+    ///
+    /// Implements: TRC-086.
+    pub fn over_noise(&self, part: &[f64], noise_sd: Force<f64>) -> Vec<f64> {
+        match &self.depth_noise[..] {
+            [] => whitened(part, self.samples, noise_sd),
+            beside => whitened_beside(part, self.samples, noise_sd, beside),
         }
     }
 

@@ -105,6 +105,11 @@ pub fn all() -> Bank {
 
 /// The bank at three depths of the probe, whose reference has a row between two of them where the force has a kink.
 pub fn deep() -> Bank {
+    beside(&[3.6e-3, 3.8e-3, 4e-3, 4.2e-3, 4.4e-3])
+}
+
+/// The same with a reference of other depths.
+fn beside(rows: &[f64]) -> Bank {
     let depths = [3.6e-3, 4e-3, 4.4e-3];
     let kinked = |map: ForceMap| {
         let (table, columns) = (map.table(), map.table().laterals().len());
@@ -116,8 +121,7 @@ pub fn deep() -> Bank {
         measured(map.phantom().cloned(), table.unwrap())
     };
     let at = |x: i32| kinked(map(Some((f64::from(x), 4.0, 8.0)), &depths));
-    let reference = kinked(map(None, &[3.6e-3, 3.8e-3, 4e-3, 4.2e-3, 4.4e-3]));
-    Bank::new(reference, (-2..=2).map(at).collect()).unwrap()
+    Bank::new(kinked(map(None, rows)), (-2..=2).map(at).collect()).unwrap()
 }
 
 /// Three passes at 3.6 to 4.4 mm, with the inclusion at `x` (mm) or none, in noise unless there is no seed; the signal is as the bank
@@ -223,6 +227,23 @@ fn a_record_is_judged_at_the_likeliest_point() {
         assert_near(estimate, truth, 4.0 * sd);
     }
     assert_eq!(found.bound.sd[3], None);
+}
+
+// Verifies: TRC-086, BNK-034.
+#[test]
+fn errors_of_the_depths_are_noise_of_the_templates_too() {
+    let bank = beside(&[3.6e-3, 4e-3, 4.4e-3]);
+    let record = path(&bank, Some(1.0), Some(5));
+    let record = record.with_depth_sd(2e-3).unwrap();
+    let mut search = search(&bank, &[], Criterion::MaximumAPosteriori);
+    search.question.noise.correlation = Correlation::None;
+    let found = search.locate(&record).unwrap();
+    let number = (0..5).find(|&number| bank.point(number) == found.point);
+    let with = bank.maps()[number.unwrap()].table();
+    let hypotheses = crate::force_map::Hypotheses::of_tables(bank.base(), with).unwrap();
+    let alone = search.question.judge(hypotheses, &record).unwrap();
+    assert_near(found.test.gamma / alone.test.gamma, 1.0, 1e-9);
+    assert_near(found.theta_max / alone.test.theta(), 1.0, 1e-9);
 }
 
 // Verifies: BNK-060, BNK-033.
