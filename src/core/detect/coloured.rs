@@ -3,7 +3,7 @@
 
 use super::DetectError;
 use crate::stats::compensated::{self, DoubleDouble};
-use crate::stats::error::{check_length, check_samples, in_range, representable};
+use crate::stats::error::{check_length, check_not_negative, check_samples, representable};
 
 /// What a record in coloured noise says.
 #[repr(C)]
@@ -43,6 +43,12 @@ impl ColouredEvidence {
         let variance = amplitude_sd * amplitude_sd;
         let grown = 1.0 + variance * signal;
         let distance_with = left - variance * along * along / grown;
+        // A record that is the signal alone leaves 0, but for rounding.
+        let distance_with = if distance_with < 0.0 {
+            0.0
+        } else {
+            distance_with
+        };
         ColouredEvidence {
             without: -0.5 * record - log_det,
             with: -log_det - 0.5 * (distance_with + libm::log(grown)),
@@ -110,12 +116,7 @@ pub fn evidence_coloured(
     amplitude_sd: f64,
     scratch: &mut [f64],
 ) -> Result<ColouredEvidence, DetectError> {
-    in_range(
-        amplitude_sd >= 0.0,
-        "amplitude_sd",
-        amplitude_sd,
-        "at least 0",
-    )?;
+    check_not_negative("amplitude_sd", amplitude_sd)?;
     let [factor, residual, template] = whitened(residual, template, covariance, scratch)?;
     let diagonal = factor.iter().step_by(template.len() + 1);
     let log_det = diagonal.map(|root| libm::log(*root)).sum();

@@ -291,12 +291,14 @@ impl SubspaceStatistic {
             NoiseLevel::Unknown => (libm::sqrt(self.residual / self.degrees), Some(self.degrees)),
         };
         check_positive("noise of the residual", scale)?;
-        Ok(SubspaceTest {
+        let test = SubspaceTest {
             t: representable("t", self.t / scale)?,
             gamma: representable("gamma", self.gamma / scale)?,
             degrees,
             bias: representable("bias", bias / scale)?,
-        })
+        };
+        representable("theta", test.theta())?;
+        Ok(test)
     }
 }
 

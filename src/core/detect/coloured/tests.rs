@@ -255,6 +255,9 @@ fn the_evidence_is_that_of_either_whole_covariance() {
             assert!((found - expected).abs() < 1e-14, "{found} {expected}");
         }
     }
+    // A record that is the signal, but for a rounding.
+    let alike = ColouredEvidence::of_white(0.0, [0.1, 0.1], 0.1_f64.next_up(), 0.4);
+    assert_eq!(alike.distance_with, 0.0);
     for sd in [-0.1, f64::NAN, f64::INFINITY] {
         assert!(evidence_coloured(&record, &signal, &covariance, sd, scratch).is_err());
     }

@@ -113,6 +113,18 @@ fn theta_of_a_record_that_fits_without_an_inclusion_all_but_exactly() {
     close(test.theta(), -239.32170310579767);
 }
 
+// Verifies: NUI-010.
+#[test]
+fn a_theta_that_no_number_can_hold_is_refused() {
+    // T and γ are 1e160, whose squares are none.
+    let mut template = [1e150, 0.0, 0.0];
+    let nuisances = Nuisances::new(&mut [], 3).unwrap();
+    let detector = SubspaceDetector::new(nuisances, &mut template).unwrap();
+    let statistic = detector.statistic(&mut [1e150, 1e-10, 0.0]).unwrap();
+    let found = statistic.test(NoiseLevel::Unknown, 0.0);
+    assert!(found.is_err(), "{found:?}");
+}
+
 // Verifies: NUI-012, NUI-014.
 #[test]
 fn too_few_samples_cannot_make_up_for_any_prior() {
