@@ -153,6 +153,23 @@ fn several_records_and_a_bank() {
     assert_eq!(output.status.code(), Some(if undecided { 3 } else { 0 }));
 }
 
+// Verifies: CLI-175. Friction and relaxation depend on where the probe began.
+#[test]
+fn a_sweep_the_other_way_is_judged_as_if_alone() {
+    let with = place().read("with.csv");
+    let (header, rows) = with.split_once('\n').unwrap();
+    let back: Vec<&str> = rows.lines().rev().collect();
+    place().write("back.csv", format!("{header}\n{}\n", back.join("\n")));
+    let thetas = |files: &str| -> Vec<Value> {
+        let told = place().run(&format!("detect {files} {MAPS} --depth-mm 3 --format json"));
+        let all = serde_json::Deserializer::from_slice(&told.stdout).into_iter::<Value>();
+        all.map(|line| line.unwrap()["theta"].clone()).collect()
+    };
+    let alone = ["with.csv", "back.csv"].map(|file| thetas(file)[0].clone());
+    assert_ne!(alone[0], alone[1]);
+    assert_eq!(thetas("with.csv back.csv"), alone);
+}
+
 // Verifies: CLI-175.
 #[test]
 fn standard_input_is_a_record() {

@@ -120,7 +120,7 @@ pub fn detect(asked: Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
     tell(asked.arguments.format, answers.into_values().collect())
 }
 
-/// Where a pass has which forces, as numbers.
+/// Where a pass has which forces, and which way it went, as numbers.
 fn path_of(pass: &Record) -> Vec<u64> {
     let positions = pass
         .positions()
@@ -128,7 +128,8 @@ fn path_of(pass: &Record) -> Vec<u64> {
         .chain(pass.depths().into_iter().flatten());
     let numbers = positions.map(|x| x.to_bits());
     let lists = [pass.forces().lateral.len(), pass.positions().len()].map(|of| of as u64);
-    lists.into_iter().chain(numbers).collect()
+    let way = pass.travelled()[0].to_bits();
+    lists.into_iter().chain([way]).chain(numbers).collect()
 }
 
 /// What is said of a record by the detector of its path.

@@ -319,8 +319,10 @@ fn tell(
     let answer = Envelope::new("palpate-detection", 4, rows);
     arguments.format.of_one().print(&answer, || table)?;
     if decision.is_none() {
-        let (file, why) = (arguments.traces[0].display(), reasons(causes));
-        let message = format!("{file}: cannot be judged: {why}");
+        let files = arguments.traces.iter();
+        let files: Vec<_> = files.map(|file| file.display().to_string()).collect();
+        let (files, why) = (files.join(", "), reasons(causes));
+        let message = format!("{files}: cannot be judged: {why}");
         return Err(CliError::Unjudged(message));
     }
     Ok(())
