@@ -176,7 +176,7 @@ impl RobustAnswer {
         rows.value("model", "robust");
         rows.decision(self.decision, &self.causes);
         let is_weak = self.causes == [Cause::TooWeak];
-        let is_compared = self.decision.is_some() || is_weak;
+        let is_compared = self.decision.is_some() || is_weak || self.causes == [Cause::Zeroed];
         numbers! { rows;
             posterior_h1: "posterior P(inclusion)", is_compared.then_some(self.posterior);
             theta: "theta (log-likelihood ratio)", is_compared.then_some(self.theta);

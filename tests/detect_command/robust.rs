@@ -16,6 +16,35 @@ fn answer(arguments: &str) -> (Value, Option<i32>) {
     (answer.expect(&said), output.status.code())
 }
 
+// Verifies: ROB-085.
+#[test]
+fn a_sweep_that_is_too_long_or_at_the_surface_is_refused() {
+    let row = |k: u32| format!("{},0,1.{k}\n", f64::from(k) * 1.6e-3 - 8.0);
+    let rows: String = (0..=10_000).map(row).collect();
+    place().write(
+        "long.csv",
+        format!("position_mm,lateral_force_n,normal_force_n\n{rows}"),
+    );
+    assert_eq!(
+        place().refused(&format!("detect long.csv {MAPS} --depth-mm 3")),
+        "long.csv: 10001 samples; give at most 10000, such as means of neighbours"
+    );
+    for (file, force) in [("surface-none.csv", 1.0), ("surface-disc.csv", 1.5)] {
+        let row = |k: i32| format!("0,{k},{},0\n", force + 0.01 * f64::from(k * k));
+        let rows: String = (-8..=8).map(row).collect();
+        place().write(
+            file,
+            format!("depth_mm,lateral_mm,normal_force_n,lateral_force_n\n{rows}"),
+        );
+    }
+    assert_eq!(
+        place().refused(
+            "detect with.csv --reference surface-none.csv --inclusion surface-disc.csv --depth-mm 0"
+        ),
+        "with.csv: the sweep touches the surface alone; give a depth inside the gel, or maps with rows at several depths"
+    );
+}
+
 // Verifies: CLI-140, CLI-143, CLI-043, ROB-003, ROB-004, ROB-030, ROB-040, ROB-043, ROB-050.
 #[test]
 fn the_robust_model_is_the_default_and_has_three_answers() {

@@ -234,6 +234,14 @@ impl ForceTable {
         self.lateral.as_ref()
     }
 
+    /// The table without lateral forces.
+    pub(crate) fn of_normal(&self) -> ForceTable {
+        ForceTable {
+            lateral: None,
+            ..self.clone()
+        }
+    }
+
     /// Both forces, N, for what needs both.
     ///
     /// # Errors

@@ -254,6 +254,18 @@ impl Class {
         }
     }
 
+    /// The class from its first part on that is not `known`, which says what would help.
+    ///
+    /// Implements: ROB-047.
+    pub fn beside(&self, known: &[Part]) -> Class {
+        let is_unknown = |(part, _): &(Part, f64)| !known.contains(&part.name());
+        let first = self.parts.iter().position(is_unknown).unwrap_or(0);
+        Class {
+            parts: &self.parts[first..],
+            ..*self
+        }
+    }
+
     /// Its parts that are not `known`, with their sizes; none where what is left is another class.
     ///
     /// Implements: ROB-050.

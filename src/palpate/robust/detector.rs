@@ -55,7 +55,13 @@ impl<'a> RobustDetector<'a> {
     ) -> Result<RobustDetector<'a>, Refusal> {
         question.check()?;
         let is_exchanged = is_exchanged(sweeps, signals);
-        let is_reference: Vec<bool> = sweeps.iter().map(|sweep| sweep.is_reference).collect();
+        // Sweeps of a reference file are of one place, which is no other's.
+        let place = |sweep: &RobustSweep<'_>| {
+            let is_of = |other: &RobustSweep<'_>| other.record.file() == sweep.record.file();
+            let first = sweeps.iter().position(is_of).filter(|_| sweep.is_reference);
+            first.map_or(0, |first| 1 + first)
+        };
+        let places: Vec<usize> = sweeps.iter().map(place).collect();
         let prepare = |sweep: &RobustSweep<'_>| prepared(&question, without, sweep);
         let sweeps = sweeps.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
         let disturbances: Vec<_> = (sweeps.iter())
@@ -63,12 +69,12 @@ impl<'a> RobustDetector<'a> {
             .collect();
         let alone = (signals.len() == 1).then_some(&SUPPORT_ALONE);
         let all = CLASSES.iter().chain(alone);
-        let (classes, mut weighted) = weighted(all, question.known, &disturbances, &is_reference);
-        let shape = |(sweep, is_reference): (&Disturbances<'_>, &bool)| Covariance {
+        let (classes, mut weighted) = weighted(all, question.known, &disturbances, &places);
+        let shape = |(sweep, place): (&Disturbances<'_>, &usize)| Covariance {
             vectors: Vec::new(),
-            rest: sweep.shape() * f64::from(!is_reference),
+            rest: sweep.shape() * f64::from(*place == 0),
         };
-        let shapes: Vec<_> = disturbances.iter().zip(&is_reference).map(shape).collect();
+        let shapes: Vec<_> = disturbances.iter().zip(&places).map(shape).collect();
         let mut shape = joined(&shapes, |sweep| sweep);
         let mut signals: Vec<Signal> = signals.iter().map(|of| in_modes(of, &sweeps)).collect();
         let counts = sweeps.iter().flat_map(PreparedSweep::counted);
@@ -122,21 +128,14 @@ impl<'a> RobustDetector<'a> {
             }
         }
         let mut answer = RobustAnswer {
-            decision: None,
-            causes: Vec::new(),
-            theta: 0.0,
             posterior: self.question.prior_h1,
-            thetas: Vec::new(),
-            classes: Vec::new(),
-            rates: None,
-            levels: Vec::new(),
-            noise_sd: Vec::new(),
-            glitches: Vec::new(),
-            in_air: Vec::new(),
-            explanation: None,
+            ..RobustAnswer::default()
         };
         let cleaned = self.cleaned(records, &mut answer);
         if !answer.causes.is_empty() {
+            // One for each sweep, or none.
+            (answer.levels, answer.noise_sd, answer.glitches) = Default::default();
+            answer.causes.dedup();
             return Ok(answer);
         }
         let level = self.level(&answer.levels);
@@ -228,11 +227,14 @@ impl<'a> RobustDetector<'a> {
         }
         answer.decision = if answer.posterior >= question.sure {
             Some(Decision::Inclusion)
-        } else if answer.posterior <= 1.0 - question.sure && !question.is_zeroed {
-            Some(Decision::NoInclusion)
-        } else {
+        } else if answer.posterior > 1.0 - question.sure {
             answer.causes.push(Cause::TooWeak);
             None
+        } else if question.is_zeroed {
+            answer.causes.push(Cause::Zeroed);
+            None
+        } else {
+            Some(Decision::NoInclusion)
         };
         Ok(())
     }
@@ -324,13 +326,13 @@ fn weighted<'c>(
     classes: impl Iterator<Item = &'c Class>,
     known: &[Part],
     disturbances: &[Disturbances<'_>],
-    is_reference: &[bool],
+    places: &[usize],
 ) -> (Vec<Class>, Vec<WeightedClass>) {
     let part = |part: Part| {
         let sweeps: Vec<_> = disturbances.iter().map(|sweep| sweep.part(part)).collect();
         joined(&sweeps, |sweep| match part.shared_by() {
             SharedBy::None => sweep,
-            SharedBy::Place => usize::from(is_reference[sweep]),
+            SharedBy::Place => places[sweep],
             SharedBy::Gel => 0,
         })
     };
@@ -343,7 +345,7 @@ fn weighted<'c>(
             covariance += &parts[part as usize] * (size * size);
         }
         let weight = class.weight;
-        Some((*class, WeightedClass { weight, covariance }))
+        Some((class.beside(known), WeightedClass { weight, covariance }))
     };
     classes.filter_map(class).unzip()
 }

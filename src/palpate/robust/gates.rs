@@ -4,6 +4,8 @@ use super::modes::Modes;
 
 /// A sample is a glitch if it is so many standard deviations from what the others say of it.
 const GLITCH: f64 = 6.0;
+/// A sensor is stuck where this share of the normal forces has one value.
+const STUCK: f64 = 0.95;
 /// So many glitches are replaced, or this share of the samples; more refuse the record.
 pub const MOST_GLITCHES: usize = 2;
 const MOST_GLITCHES_SHARE: f64 = 0.05;
@@ -38,6 +40,16 @@ pub fn is_saturated(channel: &[f64]) -> bool {
         count as f64 >= f64::max(4.0, 0.02 * samples) && count > 3 * most && count as f64 > coarse
     };
     runs.len() > 1 && (is_end(*first, *last) || is_end(*last, *first))
+}
+
+/// Whether one value is nearly all of the normal force, which differs from place to place over a gel.
+///
+/// Implements: ROB-001.
+pub fn is_stuck(normal: &[f64]) -> bool {
+    let mut sorted = normal.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let runs = sorted.chunk_by(|a, b| a == b).map(<[f64]>::len);
+    runs.max() >= Some((STUCK * sorted.len() as f64) as usize)
 }
 
 /// The smallest difference of two values, N: the resolution of the sensor.

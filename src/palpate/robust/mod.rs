@@ -106,7 +106,7 @@ pub struct RobustSignal {
 }
 
 /// The answer.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct RobustAnswer {
     /// Ĥ; none if the record cannot be judged.
     pub decision: Option<Decision>,
@@ -184,6 +184,8 @@ impl RobustQuestion<'_> {
         sweeps: &[RobustSweep<'_>],
     ) -> Result<RobustDetector<'_>, Refusal> {
         let (without, with) = (hypotheses.without(), hypotheses.with());
+        let normal = (!hypotheses.have_lateral()).then(|| without.of_normal());
+        let without = normal.as_ref().unwrap_or(without);
         let signal = |sweep: &RobustSweep<'_>| sweep.signal(with, &sweep.expected(without)?);
         let of_sweeps = sweeps.iter().map(signal).collect::<Result<_, Refusal>>()?;
         let signal = RobustSignal {

@@ -20,6 +20,8 @@ const MOST_SHARE: f64 = 10.0;
 ///
 /// Implements: ROB-082.
 const ZERO: f64 = 0.031;
+/// Samples of a sweep: beyond, a covariance between them would take gigabytes.
+const MOST_SAMPLES: usize = 10_000;
 
 /// A sweep in its modes.
 pub struct PreparedSweep {
@@ -78,7 +80,9 @@ impl RobustQuestion<'_> {
 /// The sweep, ready for its records.
 ///
 /// # Errors
-/// Samples outside the map; too few samples.
+/// Samples outside the map; too few samples, or too many; a sweep over the surface by a map of no other depth.
+///
+/// Implements: ROB-085.
 pub fn prepared(
     question: &RobustQuestion<'_>,
     without: &ForceTable,
@@ -92,6 +96,11 @@ pub fn prepared(
         format!("give at least {least}"),
     );
     few.in_file(record.file()).when(samples < least)?;
+    let many = Refusal::state(
+        format!("{samples} samples"),
+        format!("give at most {MOST_SAMPLES}, such as means of neighbours"),
+    );
+    many.in_file(record.file()).when(samples > MOST_SAMPLES)?;
     let undisturbed = undisturbed(question, without, sweep)?;
     let is_stated = question.noise_sd.is_some();
     let modes = Modes::new(record.positions(), undisturbed.radius, is_stated);
@@ -127,6 +136,14 @@ fn undisturbed(
         .map_or_else(|| vec![depth; samples], <[f64]>::to_vec);
     let forces = expected(record, without, depth)?;
     let slope = slope(record, without, depth, expected)?;
+    let surface = Refusal::state(
+        "the sweep touches the surface alone",
+        "give a depth inside the gel, or maps with rows at several depths",
+    );
+    let touches = |depth: &f64| *depth <= 0.0;
+    surface
+        .in_file(record.file())
+        .when(slope.is_none() && own_depths.iter().any(touches))?;
     // A thick gel gives way as its depth, at least.
     let over_depth = || (forces.iter().zip(own_depths.iter().cycle())).map(|(f, d)| f / d);
     let slope = slope.unwrap_or_else(|| over_depth().collect());
@@ -209,7 +226,8 @@ impl PreparedSweep {
         if is_narrow(modes.width, self.undisturbed.radius) {
             return Err(Cause::Narrow);
         }
-        if forces.into_array().into_iter().any(gates::is_saturated) {
+        let mut of_channels = forces.into_array().into_iter();
+        if gates::is_stuck(forces.normal) || of_channels.any(gates::is_saturated) {
             return Err(Cause::Saturated);
         }
         let steps = forces.map(gates::step);
@@ -297,8 +315,9 @@ impl PreparedSweep {
             })
     }
 
-    /// Σ of the normal forces that the map expects, N.
+    /// The mean of the normal forces that the map expects, N.
     pub fn weight(&self) -> f64 {
-        channels(&self.undisturbed.forces).normal.iter().sum()
+        let normal = channels(&self.undisturbed.forces).normal;
+        normal.iter().sum::<f64>() / normal.len() as f64
     }
 }

@@ -8,7 +8,7 @@ use super::classes::{CLASSES, Covariance, Disturbances, Part, Undisturbed};
 use super::detector::joined;
 use super::evidence::{Signal, WeightedClass, evidence};
 use super::explanation::fitted;
-use super::gates::{is_saturated, step, without_glitches};
+use super::gates::{is_saturated, is_stuck, step, without_glitches};
 use super::modes::Modes;
 use super::{
     BankHypotheses, GelChanges, GelUncertainty, RobustAnswer, RobustDetector, RobustQuestion,
@@ -183,6 +183,21 @@ fn broken_sensors_are_seen_and_coarse_ones_pass() {
     assert!(is_saturated(&capped));
     let raised: Vec<f64> = channel.iter().map(|v| v.max(-1.0)).collect();
     assert!(is_saturated(&raised));
+    // A coarse converter shows one value most of the time, a stuck one nearly all of it.
+    let most = |count: usize| -> Vec<f64> {
+        let value = |at: usize| {
+            if at < count {
+                1.5
+            } else {
+                1.5 + 0.1 * at as f64
+            }
+        };
+        (0..161).map(value).collect()
+    };
+    assert_eq!(
+        [140, 152, 161].map(|count| is_stuck(&most(count))),
+        [false, true, true]
+    );
     let modes = modes(161);
     assert_eq!(without_glitches(&modes, &mut channel.clone(), 0.0), Some(0));
     let own = channel[70];
@@ -520,7 +535,7 @@ fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
     let (answer, _) = zeroed.locate(&bank, None, &[sweep]).unwrap();
     assert_eq!(
         (answer.decision, &answer.causes[..]),
-        (None, &[Cause::TooWeak][..])
+        (None, &[Cause::Zeroed][..])
     );
 }
 
@@ -758,7 +773,7 @@ fn what_is_known_of_the_gel_is_not_solved() {
     assert!(height(1.0) < 0.0, "{}", height(1.0));
 }
 
-// Verifies: ROB-033, ROB-030, ROB-045.
+// Verifies: ROB-033, ROB-030, ROB-045, ROB-047.
 #[test]
 fn a_reference_sweep_tells_of_the_gel_and_a_light_one_of_the_surface() {
     let phantom = |name| Phantom::builtin(name).unwrap();
@@ -812,6 +827,49 @@ fn a_reference_sweep_tells_of_the_gel_and_a_light_one_of_the_surface() {
     assert_near(other / alone, 1.0, 0.05);
     let [alone, known] = [&one[..], &beside].map(|sweeps| gamma(sweeps, gel));
     assert!(known > 1.5 * alone, "{alone} {known}");
+    // Sweeps of two reference files have a surface each, those of one file the same.
+    let there = Record::new("there", &positions(161), Force::new(&zeros, &zeros)).unwrap();
+    let reference = |record| RobustSweep {
+        record,
+        ..sweep(1, true)
+    };
+    let sweeps = [
+        sweep(1, false),
+        reference(&there),
+        reference(&there),
+        reference(&over),
+    ];
+    let signal = RobustSignal {
+        of_sweeps: vec![
+            vec![1.0; 322],
+            vec![0.0; 322],
+            vec![0.0; 322],
+            vec![0.0; 322],
+        ],
+        amplitude_sd: 0.4,
+        prior: 1.0,
+    };
+    let question = RobustQuestion::default();
+    let signals = [signal];
+    let detector = RobustDetector::new(question, none.table(), &sweeps, &signals).unwrap();
+    let class = CLASSES.iter().position(|of| of.name == surface);
+    let covariance = &detector.weighted[class.unwrap()].covariance;
+    let size = covariance.nrows() / 4;
+    let shared = [(1, 2), (1, 3), (0, 3)]
+        .map(|(a, b)| covariance.view((a * size, b * size), (size, size)).amax() > 0.0);
+    assert_eq!(shared, [true, false, false]);
+    // What is known does not help.
+    let question = RobustQuestion {
+        known: &[Part::Gel],
+        ..question
+    };
+    let detector = RobustDetector::new(question, none.table(), &sweeps, &signals).unwrap();
+    let classes = detector.gammas(0, Force::new(0.02, 0.02));
+    let (several, _) = classes
+        .iter()
+        .find(|(of, _)| of.name == "several of these at once")
+        .unwrap();
+    assert!(several.remedy().starts_with("more sweeps"));
 }
 
 // Verifies: ROB-005. The limit of a noise that grows is another way to the same number.

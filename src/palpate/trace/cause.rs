@@ -32,6 +32,8 @@ pub enum Cause {
     Exchanged,
     /// Some disturbance explains the record as well as an inclusion does.
     TooWeak,
+    /// No inclusion explains the record, but neither does a gel alone: the sensor was set to zero on it.
+    Zeroed,
 }
 
 /// What is wrong, and what to do; of [`Cause::TooWeak`] the likeliest class of disturbance says what to do.
@@ -52,6 +54,7 @@ impl fmt::Display for Cause {
             Cause::Narrow => "the sweep is shorter than half the radius of the probe: check the unit of the positions, or make a longer sweep",
             Cause::Exchanged => "the map with the inclusion has smaller forces than the reference: exchange the maps",
             Cause::TooWeak => "the record is too weak to tell an inclusion from what else may bend it",
+            Cause::Zeroed => "a sensor that was set to zero on the gel records the same in air as over a gel without an inclusion: set it to zero above the gel",
         })
     }
 }
