@@ -11,7 +11,7 @@ fn defined<'a>(line: &'a str, keyword: &str) -> Option<&'a str> {
     Some(name)
 }
 
-/// The harnesses for Kani in a file: each as its line of `expected.txt`, with its module, solver and requirements.
+/// The harnesses in a file: each as its line of `expected.txt`, with its module, solver (`none` outside Kani) and requirements.
 fn harnesses(module: &str, text: &str) -> BTreeSet<String> {
     let (mut found, mut verifies, mut proof, mut within) = (BTreeSet::new(), "", None, "");
     let row = |name: &str, solver: &str, verifies: &str| {
@@ -22,6 +22,8 @@ fn harnesses(module: &str, text: &str) -> BTreeSet<String> {
             verifies = ids.trim_end_matches('.');
         } else if let Some(name) = defined(line, "macro_rules! ") {
             within = name;
+        } else if line == "#[test]" {
+            proof = Some("none");
         } else if line.contains("kani::proof") {
             let (_, solver) = line
                 .split_once("kani::solver(")
@@ -33,11 +35,12 @@ fn harnesses(module: &str, text: &str) -> BTreeSet<String> {
                 found.insert(row(name, solver, verifies));
                 continue;
             }
-            let start = format!("\n{within}!(");
-            let uses = text
-                .split(&start)
-                .skip(1)
-                .filter_map(|rest| rest.split([',', ')']).next());
+            let start = format!("\n{within}!");
+            let uses = text.split(&start).skip(1).filter_map(|rest| {
+                rest.trim_start_matches(['(', '{', ' '])
+                    .split([',', ')'])
+                    .next()
+            });
             found.extend(uses.map(|name| row(name, solver, verifies)));
         }
     }
@@ -52,6 +55,16 @@ fn the_harnesses_are_those_that_are_expected() {
         let path = entry.unwrap().path();
         let module = path.file_stem().unwrap().to_str().unwrap();
         found.extend(harnesses(module, &fs::read_to_string(&path).unwrap()));
+    }
+    for entry in fs::read_dir(folder.join("gappa")).unwrap() {
+        let path = entry.unwrap().path();
+        let text = fs::read_to_string(&path).unwrap();
+        let proved = text
+            .lines()
+            .find_map(|line| line.strip_prefix("# Proves: "));
+        let (ids, _) = proved.unwrap().split_once('.').unwrap();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        found.insert(format!("gappa/{name} gappa {ids}"));
     }
     let rows = include_str!("../expected.txt").lines();
     let rows = rows.filter(|line| !line.starts_with('#'));
