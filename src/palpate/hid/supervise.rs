@@ -24,6 +24,15 @@ struct Board {
     counters: Mutex<Counters>,
 }
 
+/// Ends the session when the supervisor is done, also by a panic: the scope waits for the servo thread.
+struct Supervised<'a>(&'a Board);
+
+impl Drop for Supervised<'_> {
+    fn drop(&mut self) {
+        self.0.stop.store(true, Ordering::Relaxed);
+    }
+}
+
 /// What a session was.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Played {
@@ -57,7 +66,7 @@ pub struct PlayOptions {
 /// The servo thread neither allocates nor locks. Returns `None` if it panicked, after the device was
 /// stopped.
 ///
-/// Implements: HID-053, HID-054, HID-055.
+/// Implements: HID-016, HID-053, HID-054, HID-055.
 pub fn play<D: HapticDevice + Send>(
     session: Session<D>,
     options: &PlayOptions,
@@ -67,6 +76,7 @@ pub fn play<D: HapticDevice + Send>(
 ) -> Option<Played> {
     let board = &Board::default();
     std::thread::scope(|scope| {
+        let _ends = Supervised(board);
         let servo = scope.spawn(move || {
             prepare();
             servo_loop(session, options, board)

@@ -1,5 +1,7 @@
 //! The supervisor over devices that fail on the clock of the host.
 
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
 use super::*;
 use crate::hid::simulated::Defect;
 use crate::hid::tests::{MS, Sent, Watched, begin, probing};
@@ -95,6 +97,21 @@ fn the_wish_to_stop_reaches_the_loop() {
     let played = played(wait, || asked.load(Ordering::Relaxed), look).unwrap();
     assert_eq!(played.end, End::Asked);
     assert!(played.counters.cycles < 1100, "{:?}", played.counters);
+}
+
+// Verifies: HID-016.
+#[test]
+fn a_panic_of_the_supervisor_ends_the_session() {
+    let mut writes = 0;
+    // Eleven times, if nothing ends the session.
+    let wait = || {
+        writes += 1;
+        std::thread::sleep(HELD_UP);
+    };
+    // Without a backtrace, which may take a second.
+    let session = || played(wait, || false, |_, _| resume_unwind(Box::new(())));
+    catch_unwind(AssertUnwindSafe(session)).unwrap_err();
+    assert!(writes < 5, "{writes}");
 }
 
 // Verifies: HID-016.
