@@ -200,6 +200,28 @@ fn a_reader_that_goes_away_is_no_error() {
     }
 }
 
+// Verifies: CLI-003.
+#[test]
+fn what_nobody_reads_changes_neither_the_work_nor_its_exit_code() {
+    let here = Place::new("unread");
+    let header = "depth_mm,lateral_mm,normal_force_n,lateral_force_n,by";
+    here.write(
+        "gel.csv",
+        format!("{header}\n1,0,0.2,0,me\n1,2,0.2,0,me\n2,0,0.4,0,me\n2,2,0.4,0,me\n"),
+    );
+    for (line, code) in [("solve --bad", 2), ("import-map gel.csv --out gel.json", 0)] {
+        let (reader, unread) = std::io::pipe().unwrap();
+        drop(reader);
+        let status = here
+            .palpate(line)
+            .stdout(Stdio::null())
+            .stderr(unread)
+            .status();
+        assert_eq!(status.unwrap().code(), Some(code), "{line}");
+    }
+    assert!(here.at("gel.json").is_file());
+}
+
 // Verifies: CLI-005, CLI-006.
 #[test]
 fn files_are_whole_and_progress_stays_off_a_pipe() {

@@ -38,7 +38,7 @@ impl Display for CliError {
             CliError::Usage(message)
             | CliError::Check(message)
             | CliError::Unjudged(message)
-            | CliError::Meaningless(message) => f.write_str(message),
+            | CliError::Meaningless(message) => f.write_str(&one_line(message)),
             CliError::Refused(refusal) => refusal.fmt(f),
         }
     }
@@ -87,8 +87,7 @@ impl CliError {
         if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
             return CliError::Usage("no command; try 'palpate run' or 'palpate --help'".into());
         }
-        // The parser quotes the arguments, without their escape sequences but not without the rest.
-        CliError::Usage(one_line(&format!("{message}{tip}; see --help")))
+        CliError::Usage(format!("{message}{tip}; see --help"))
     }
 
     /// 1 if a computation failed, 2 if the input is to blame, 3 if a record cannot be judged, 4 if forces mean nothing.
@@ -99,5 +98,17 @@ impl CliError {
             CliError::Unjudged(_) => 3,
             CliError::Meaningless(_) => 4,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Verifies: CLI-002.
+    #[test]
+    fn a_message_is_one_line_whatever_it_quotes() {
+        let error = CliError::file("read", Path::new("a\nb.csv"))(io::ErrorKind::NotFound.into());
+        assert_eq!(error.to_string(), "read a b.csv: entity not found");
     }
 }

@@ -107,7 +107,7 @@ pub fn program<A: Parser>(
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("{}: {error}", A::command().get_name());
+            output::say(format_args!("{}: {error}\n", A::command().get_name()));
             ExitCode::from(error.exit_code())
         }
     }

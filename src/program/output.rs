@@ -162,12 +162,19 @@ pub(super) fn shows_progress() -> bool {
     !QUIET.load(Ordering::Relaxed) && std::io::stderr().is_terminal()
 }
 
+/// Prints text to standard error, whether or not somebody reads it.
+///
+/// Implements: CLI-003.
+pub(super) fn say(text: impl Display) {
+    let _ = write!(std::io::stderr(), "{text}");
+}
+
 /// Prints a note to standard error.
 ///
 /// Implements: CLI-224.
 pub(super) fn tell(text: &str) {
     if !QUIET.load(Ordering::Relaxed) {
-        eprintln!("palpate: note: {}", one_line(text));
+        say(format_args!("palpate: note: {}\n", one_line(text)));
     }
 }
 
@@ -193,7 +200,9 @@ pub(super) fn marked(text: &str, color: AnsiColor) -> String {
 /// Implements: CLI-225.
 pub(super) fn warn(text: &str) {
     let marked = AnsiColor::Yellow.on_default().bold();
-    anstream::eprintln!("palpate: {marked}warning{marked:#}: {}", one_line(text));
+    let text = format!("palpate: {marked}warning{marked:#}: {}\n", one_line(text));
+    // As in `say`.
+    let _ = anstream::stderr().write_all(text.as_bytes());
 }
 
 /// Writes a file whole, or leaves it as it was.

@@ -10,7 +10,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::error::refuse;
-use super::output::{print, read, shows_progress, tell, write};
+use super::output::{print, read, say, shows_progress, tell, write};
 use super::platform::{PROMISE, raise_priority, stop_on_signals};
 use super::playback::{DeviceArguments, limits, loaded_map};
 use super::{CliError, Format};
@@ -119,7 +119,7 @@ fn session(
     let look = live(!is_simulated);
     let played = supervised(session, &options, raise_priority, stop, look);
     if shows_progress() {
-        eprint!("\r\x1b[K"); // the summary begins on an empty line
+        say("\r\x1b[K"); // the summary begins on an empty line
     }
     let panicked = "the servo thread panicked; the device was told to stop";
     let played = played.ok_or(CliError::Check(panicked.into()))?;
@@ -143,7 +143,7 @@ fn session(
     };
     let text = summary.text(arguments.format);
     if arguments.device.is_pipe() {
-        eprint!("{text}"); // standard output is the device
+        say(text); // standard output is the device
     } else {
         print(&text)?;
     }
@@ -176,14 +176,14 @@ fn live(wall_clock: bool) -> impl FnMut(&Counters, Duration) {
     move |counters, silent| {
         if wall_clock && silent > HELD_UP && !told {
             told = true;
-            eprintln!(
-                "the servo thread has been held up for {} ms: the device's own watchdog must drop the force",
+            say(format_args!(
+                "the servo thread has been held up for {} ms: the device's own watchdog must drop the force\n",
                 silent.as_millis()
-            );
+            ));
         }
         told &= silent > HELD_UP;
         if terminal {
-            eprint!("\r{}\x1b[K", counted(counters));
+            say(format_args!("\r{}\x1b[K", counted(counters)));
         }
     }
 }

@@ -165,7 +165,7 @@ fn tell(format: AnswerFormat, answers: Vec<Answer>) -> Result<(), CliError> {
     for answer in &answers {
         tell_glitches(&field(answer, "trace"), answer.glitches);
         if answer.is_judged.is_none() {
-            eprintln!("palpate: {}", field(answer, "error"));
+            crate::output::say(format_args!("palpate: {}\n", field(answer, "error")));
         }
     }
     let lines: String = match format {
