@@ -29,7 +29,10 @@ use crate::refusal::{Refusal, did_you_mean};
 /// The longest text that is read, bytes: more than an hour of playback, recorded.
 const LONGEST: u64 = 256 << 20;
 
-/// The text of a file in UTF-8, which may be a pipe or a device, but not an endless one.
+/// The byte order mark, with which some editors begin a text.
+const MARK: char = '\u{feff}';
+
+/// The text of a file in UTF-8, without a byte order mark, which may be a pipe or a device, but not an endless one.
 ///
 /// Implements: CLI-008.
 pub fn text(path: &Path) -> io::Result<String> {
@@ -40,11 +43,16 @@ pub fn text(path: &Path) -> io::Result<String> {
 ///
 /// Implements: CLI-008.
 pub fn text_of(file: impl Read) -> io::Result<String> {
-    let mut text = String::new();
-    let length = file.take(LONGEST + 1).read_to_string(&mut text)?;
+    let wrong = |message: String| Error::new(ErrorKind::InvalidData, message);
+    let mut bytes = Vec::new();
+    let length = file.take(LONGEST + 1).read_to_end(&mut bytes)?;
     if length as u64 > LONGEST {
-        let message = format!("it is longer than {} MiB", LONGEST >> 20);
-        return Err(Error::new(ErrorKind::InvalidData, message));
+        return Err(wrong(format!("it is longer than {} MiB", LONGEST >> 20)));
+    }
+    let mut text = String::from_utf8(bytes)
+        .map_err(|_| wrong("it is not in UTF-8; save it as UTF-8".into()))?;
+    if text.starts_with(MARK) {
+        text.drain(..MARK.len_utf8());
     }
     Ok(text)
 }
@@ -111,5 +119,17 @@ fn refusal(path: &KeyPath, message: &str) -> Refusal {
             }
             _ => Refusal::state(format!("{key}: {found}"), give),
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    // Verifies: CLI-008.
+    #[test]
+    fn a_text_is_in_utf_8_with_or_without_a_mark() {
+        let read = |bytes: &[u8]| super::text_of(bytes).map_err(|error| error.to_string());
+        assert_eq!(read(b"\xef\xbb\xbf{}"), Ok("{}".into()));
+        let other = "it is not in UTF-8; save it as UTF-8";
+        assert_eq!(read(b"\xff\xfe{\0}\0"), Err(other.into()));
     }
 }
