@@ -277,6 +277,34 @@ fn an_experiment_goes_on_after_an_abort() {
     }
 }
 
+// Verifies: CLI-005, CLI-065, CLI-067.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_recording_that_cannot_be_written_is_told_before_the_session_or_after_its_summary() {
+    let here = place("unwritable", &[("gel", 300.0, 0.0)]);
+    here.write("about", palpate::hid::simulated::PAPER.encode());
+    let mut player = here.palpate("play --map gel --device pipe --seconds 1 --record no/such");
+    let player = player.stdin(File::open(here.at("about")).unwrap());
+    let before = player.output().unwrap();
+    let told = "palpate: write no/such: No such file or directory (os error 2)\n";
+    assert_eq!(
+        (before.status.code(), text(&before.stderr)),
+        (Some(2), told)
+    );
+    assert!(before.stdout.is_empty());
+    // As on a disk that is full by then.
+    let line = "trap '' XFSZ; ulimit -f 8; exec \"$0\" play --map gel --record session";
+    let mut player = Command::new("bash");
+    player.current_dir(here.at(""));
+    let after = player
+        .args(["-c", line, crate::program::PROGRAM])
+        .output()
+        .unwrap();
+    assert_eq!(after.status.code(), Some(2));
+    assert!(text(&after.stdout).starts_with("ended as asked\n"));
+    assert_has(text(&after.stderr), "palpate: write session: ");
+}
+
 /// The bridge of `contrib/bridge` to the stub of a maker's library, compiled.
 #[cfg(unix)]
 fn bridge(here: &Place) -> std::path::PathBuf {

@@ -14,6 +14,7 @@ use super::output::{print, read, say, shows_progress, tell, write};
 use super::platform::{PROMISE, raise_priority, stop_on_signals};
 use super::playback::{DeviceArguments, limits, loaded_map};
 use super::{CliError, Format};
+use palpate::file::check_writable;
 use palpate::force_map::ForceMap;
 use palpate::hid::simulated::Trajectory;
 use palpate::hid::supervise::{HELD_UP, PlayOptions, play as supervised};
@@ -21,8 +22,8 @@ use palpate::hid::timing::Timing;
 use palpate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session};
 use palpate::servo::{Limits, LoadedTable};
 
-/// Most seconds that can be recorded: an hour at 1 kHz.
-const MOST_RECORDED: u64 = 3600;
+/// Most cycles that are recorded: as many as can be read again.
+const MOST_RECORDED: u32 = 1_000_000;
 
 /// Arguments of `palpate play`.
 #[derive(Debug, Args)]
@@ -108,6 +109,9 @@ fn session(
         duration,
         record: recorded_cycles(arguments, &capabilities, duration)?,
     };
+    if let Some(path) = &arguments.record {
+        check_writable(path).map_err(CliError::file("write", path))?;
+    }
     let stop = stop_on_signals()?;
     let is_simulated = arguments.device.is_simulated();
     if !is_simulated {
@@ -123,14 +127,13 @@ fn session(
     }
     let panicked = "the servo thread panicked; the device was told to stop";
     let played = played.ok_or(CliError::Check(panicked.into()))?;
-    if let Some(path) = &arguments.record {
-        let recording = Recording {
-            capabilities,
-            limits,
-            cycles: played.cycles,
-        };
-        write(path, &recording.to_text())?;
-    }
+    let recording = Recording {
+        capabilities,
+        limits,
+        cycles: played.cycles,
+    };
+    let path = arguments.record.as_ref();
+    let recorded = path.map_or(Ok(()), |path| write(path, &recording.to_text()));
     let held_up = played.held_up.filter(|_| !is_simulated);
     let summary = Summary {
         end: played.end.to_string(),
@@ -147,6 +150,7 @@ fn session(
     } else {
         print(&text)?;
     }
+    recorded?;
     match played.end {
         End::Asked => Ok(()),
         _ => Err(CliError::Check(summary.end)),
@@ -159,13 +163,13 @@ fn recorded_cycles(
     capabilities: &Capabilities,
     duration: Option<Duration>,
 ) -> Result<usize, CliError> {
-    let seconds = duration.filter(|time| time.as_secs() <= MOST_RECORDED);
-    match (&arguments.record, seconds) {
+    let (period, longest) = (capabilities.period(), MOST_RECORDED * capabilities.period());
+    match (&arguments.record, duration) {
         (None, _) => Ok(0),
-        (Some(_), Some(time)) => {
-            Ok(time.as_micros() as usize / usize::from(capabilities.period_us.max(1)) + 64)
+        (Some(_), Some(time)) if time <= longest => {
+            Ok((time.as_micros() / period.as_micros()) as usize + 64)
         }
-        _ => refuse!("--record needs --seconds of at most {MOST_RECORDED}"),
+        _ => refuse!("--record needs --seconds of at most {}", longest.as_secs()),
     }
 }
 
@@ -240,4 +244,45 @@ fn replay(arguments: &PlayArguments, file: &Path) -> Result<(), CliError> {
     print(&format!(
         "{cycles} cycles, all forces the same to the bit\n"
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::MOST_RECORDED;
+    use palpate::hid::simulated::PAPER;
+    use palpate::hid::{ForceReport, PositionReport, RecordedCycle, Recording};
+    use palpate::servo::Limits;
+
+    // Verifies: CLI-008, CLI-067.
+    #[test]
+    fn the_longest_recording_can_be_read() {
+        let least = i16::MIN;
+        let cycle = RecordedCycle {
+            // As long as the slowest device records.
+            received_us: 65_535_000_000,
+            written_us: 65_535_000_000,
+            position: Some(PositionReport {
+                lateral: least,
+                normal: least,
+                buttons: 255,
+                status: 255,
+                sequence: 65_535,
+                force_sequence: 65_535,
+            }),
+            force: ForceReport {
+                lateral: least,
+                normal: least,
+                sequence: 65_535,
+                flags: 255,
+            },
+            playing: false,
+        };
+        let recording = Recording {
+            capabilities: PAPER,
+            limits: Limits::for_playback(4.0).unwrap(),
+            cycles: vec![cycle; 1000],
+        };
+        let bytes = recording.to_text().len() * MOST_RECORDED as usize / 1000;
+        assert!(bytes <= 256 << 20, "{bytes}");
+    }
 }

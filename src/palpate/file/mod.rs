@@ -22,11 +22,11 @@ pub use json::{check_schema, from_json, to_json};
 pub(crate) use toml::Tree;
 pub use toml::from_toml;
 pub(crate) use write::Store;
-pub use write::{write, write_new};
+pub use write::{check_writable, write, write_new};
 
 use crate::refusal::{Refusal, did_you_mean};
 
-/// The longest text that is read, bytes: more than an hour of playback, recorded.
+/// The longest text that is read, bytes: more than a million cycles of playback, recorded.
 const LONGEST: u64 = 256 << 20;
 
 /// The byte order mark, with which some editors begin a text.

@@ -46,6 +46,19 @@ pub fn write_new(path: &Path, text: &str) -> io::Result<()> {
     replace(path, text.as_bytes(), identity, link)
 }
 
+/// Whether [`write()`] could write a file now, which stays as it is. A pipe and a device are left alone.
+///
+/// # Errors
+/// As [`write()`].
+///
+/// Implements: CLI-005.
+pub fn check_writable(path: &Path) -> io::Result<()> {
+    match fs::metadata(path) {
+        Ok(there) if !there.is_file() && !there.is_dir() => Ok(()),
+        _ => replace(path, &[], identity, |_, _| Ok(())),
+    }
+}
+
 /// Gives a file its name, unless something has it.
 fn link(from: &Path, to: &Path) -> io::Result<()> {
     fs::hard_link(from, to).or_else(|_| match to.symlink_metadata() {
