@@ -1,5 +1,6 @@
 //! `palpate watch`, end to end, in pipes.
 
+use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 use std::sync::OnceLock;
@@ -291,6 +292,12 @@ fn what_cannot_be_watched_is_refused_after_what_could() {
             0,
             "no.json: cannot be read",
         ),
+        (
+            &format!("{WATCH} --figure no/such.svg"),
+            &format!("{header}0,1\n"),
+            2,
+            "write no/such.svg: ",
+        ),
     ] {
         let (found, code, error) = watched(line, input);
         assert_eq!(
@@ -303,6 +310,19 @@ fn what_cannot_be_watched_is_refused_after_what_could() {
             "{error}"
         );
     }
+}
+
+// Verifies: CLI-003, CLI-184.
+#[cfg(unix)]
+#[test]
+fn an_input_that_cannot_be_read_is_not_one_that_ended() {
+    let folder = File::open(place().at("")).unwrap();
+    let output = place().palpate(WATCH).stdin(folder).output().unwrap();
+    let expected = "palpate: -: cannot be read: Is a directory (os error 21)\n";
+    assert_eq!(
+        (output.status.code(), text(&output.stderr)),
+        (Some(2), expected)
+    );
 }
 
 // Verifies: CLI-233, SEQ-026, SEQ-022.

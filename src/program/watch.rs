@@ -1,6 +1,6 @@
 //! `palpate watch`: a sweep against a bank while it is taken (`spec/sequential.md`).
 
-use std::io::{BufRead, Read, Write, stdin, stdout};
+use std::io::{self, BufRead, Read, Write, stdin, stdout};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
@@ -109,6 +109,7 @@ pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
     let (mut answer, mut written) = (None, None::<(Instant, Option<Decision>)>);
     let (stop, lines) = (stop_on_signals()?, lines());
     while let Some(line) = next(&lines, &stop) {
+        let line = line.map_err(CliError::refused("-: cannot be read"))?;
         let Some(sample) = samples.sample(&line)? else {
             continue;
         };
@@ -132,10 +133,11 @@ pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
             "-: standard input has no samples; give a header and at least one row, or JSON objects"
         );
     };
+    let is_read = write(&answer, Some(&question.test))?;
     if let Some(path) = &arguments.figure {
         output::write(path, &coverage_figure(&watcher.places())?)?;
     }
-    match write(&answer, Some(&question.test))? && answer.decision.is_none() {
+    match is_read && answer.decision.is_none() {
         true => Err(CliError::Unjudged(why_undecided(&answer))),
         false => Ok(()),
     }
@@ -160,25 +162,31 @@ fn why_undecided(answer: &WatchAnswer) -> String {
 }
 
 /// The lines of standard input, which another thread reads, so that a signal need not wait for the next one.
-fn lines() -> Receiver<String> {
+pub(super) fn lines() -> Receiver<io::Result<String>> {
     let (to, lines) = sync_channel(WAITING);
     thread::spawn(move || {
         let (mut input, mut line) = (stdin().lock(), Vec::new());
-        let mut read =
-            |line: &mut Vec<u8>| input.by_ref().take(LONGEST_LINE).read_until(b'\n', line);
-        while read(&mut line).is_ok_and(|length| length > 0) {
-            let text = String::from_utf8_lossy(&line).into_owned();
-            if to.send(text).is_err() {
+        loop {
+            line.clear();
+            let read = input
+                .by_ref()
+                .take(LONGEST_LINE)
+                .read_until(b'\n', &mut line);
+            let text = read.map(|_| String::from_utf8_lossy(&line).into_owned());
+            let is_end = text.as_ref().is_ok_and(String::is_empty);
+            if is_end || to.send(text).is_err() {
                 break;
             }
-            line.clear();
         }
     });
     lines
 }
 
 /// The next line; none at the end of the input, or after a signal.
-fn next(lines: &Receiver<String>, stop: &AtomicBool) -> Option<String> {
+pub(super) fn next(
+    lines: &Receiver<io::Result<String>>,
+    stop: &AtomicBool,
+) -> Option<io::Result<String>> {
     while !stop.load(Ordering::Relaxed) {
         match lines.recv_timeout(LOOK) {
             Err(RecvTimeoutError::Timeout) => {}
