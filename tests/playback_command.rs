@@ -277,6 +277,33 @@ fn an_experiment_goes_on_after_an_abort() {
     }
 }
 
+// Verifies: CLI-071, HID-016.
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_an_experiment_that_keeps_its_answers() {
+    let here = place("abort", &[("none", 300.0, 0.0), ("bump", 300.0, 60.0)]);
+    let line =
+        "experiment --reference none --inclusion 6.6=bump --seed 5 --trials 1000 --seconds 60";
+    for options in [
+        "--journal person",
+        "--journal ideal --observer ideal --noise 2",
+    ] {
+        let mut subject = here.palpate(&format!("{line} {options}"));
+        subject.stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut subject = subject.stderr(Stdio::piped()).spawn().unwrap();
+        // The input does not end.
+        let _keyboard = subject.stdin.take();
+        std::thread::sleep(Duration::from_millis(1500));
+        send("TERM", &subject);
+        let output = subject.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        let journal = here.read(options.split(' ').nth(1).unwrap());
+        let answers = journal.lines().count() - 1;
+        let told = format!("{answers} of 1000 pairs answered");
+        assert!(text(&output.stdout).starts_with(&told), "{told}");
+    }
+}
+
 // Verifies: CLI-005, CLI-065, CLI-067.
 #[cfg(target_os = "linux")]
 #[test]

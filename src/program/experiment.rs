@@ -1,7 +1,10 @@
 //! `palpate experiment`: two-alternative forced choice (`spec/command-line.md`).
 
-use std::io::{BufRead, Read};
+use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
@@ -9,9 +12,11 @@ use clap::{Args, ValueEnum};
 use super::CliError;
 use super::error::refuse;
 use super::numbers::newtons;
-use super::output::print;
+use super::output::{print, say};
+use super::platform::{raise_priority, stop_on_signals};
 use super::playback::{DeviceArguments, limits};
 use super::progress::bar;
+use super::watch::{lines, next};
 use palpate::force_map::{ForceMap, Hypotheses};
 use palpate::hid::HapticDevice;
 use palpate::hid::simulated::Trajectory;
@@ -78,6 +83,7 @@ pub(super) fn named_file(text: &str) -> Result<(String, PathBuf), String> {
 
 /// A name that a row of the results can hold.
 fn plain_name(text: &str) -> Result<String, String> {
+    let text = text.trim();
     let plain = |c: char| c.is_alphanumeric() || " .-_".contains(c);
     if text.is_empty() || !text.chars().all(plain) {
         return Err(format!(
@@ -89,7 +95,7 @@ fn plain_name(text: &str) -> Result<String, String> {
 
 /// Runs the command.
 ///
-/// Implements: CLI-070, CLI-071, CLI-072.
+/// Implements: CLI-070, CLI-071, CLI-072, HID-016, HID-055.
 pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
     arguments.device.check()?;
     if arguments.device.is_pipe() {
@@ -100,13 +106,20 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
     if arguments.observer == Observer::Ideal && !arguments.device.is_simulated() {
         refuse!("--observer ideal has no hand; use --device sim");
     }
+    let setup = arguments.setup();
+    let mut experiment = Experiment::new(setup.clone())?;
     let pairs = Pairs::read(arguments)?;
-    let (mut experiment, journal) = open_journal(arguments)?;
+    let path = arguments.journal.clone();
+    let take = |line: &str| experiment.take(line);
+    let journal = Journal::open(path, &setup, "palpate experiment", take)?;
     let total = arguments.pairs();
     let bar = match arguments.observer {
         Observer::Ideal => bar(total, "pairs"),
         Observer::Person => indicatif::ProgressBar::hidden(),
     };
+    if !arguments.device.is_simulated() {
+        raise_priority();
+    }
     while let Some((number, trial)) = experiment.next() {
         let Some(chosen) = pairs.judge(number, trial)? else {
             return print(&format!(
@@ -128,24 +141,18 @@ impl ExperimentArguments {
     fn pairs(&self) -> usize {
         self.inclusion.len() * self.trials as usize
     }
-}
 
-/// The experiment with the answers so far, and the journal that keeps them.
-fn open_journal(arguments: &ExperimentArguments) -> Result<(Experiment, Journal), CliError> {
-    let names = arguments.inclusion.iter().map(|(name, _)| name.clone());
-    let setup = Setup {
-        schema_version: 1,
-        seed: arguments.seed,
-        trials: arguments.trials as usize,
-        subject: arguments.subject.clone(),
-        condition: arguments.condition.clone(),
-        inclusions: names.collect(),
-    };
-    let mut experiment = Experiment::new(setup.clone());
-    let path = arguments.journal.clone();
-    let take = |line: &str| experiment.take(line);
-    let journal = Journal::open(path, &setup, "palpate experiment", take)?;
-    Ok((experiment, journal))
+    fn setup(&self) -> Setup {
+        let names = self.inclusion.iter().map(|(name, _)| name.clone());
+        Setup {
+            schema_version: 1,
+            seed: self.seed,
+            trials: self.trials as usize,
+            subject: self.subject.clone(),
+            condition: self.condition.clone(),
+            inclusions: names.collect(),
+        }
+    }
 }
 
 /// A map, and the table that plays it.
@@ -157,6 +164,10 @@ struct Pairs<'a> {
     limits: Limits,
     reference: Sample,
     inclusions: Vec<Sample>,
+    /// Set by a signal.
+    stop: Arc<AtomicBool>,
+    /// What a person types.
+    keyboard: Option<Receiver<io::Result<String>>>,
 }
 
 impl<'a> Pairs<'a> {
@@ -179,6 +190,8 @@ impl<'a> Pairs<'a> {
             limits,
             reference,
             inclusions: inclusions.collect::<Result<_, _>>()?,
+            stop: stop_on_signals()?,
+            keyboard: (arguments.observer == Observer::Person).then(lines),
         };
         for number in 0..pairs.inclusions.len() {
             pairs.hypotheses(number)?;
@@ -193,7 +206,7 @@ impl<'a> Pairs<'a> {
         hypotheses.map_err(CliError::refused(path.display()))
     }
 
-    /// The answer to the pair with a number; `None` if the person stops.
+    /// The answer to the pair with a number; `None` if the person or a signal stops.
     fn judge(&self, number: usize, trial: Trial) -> Result<Option<Interval>, CliError> {
         let mut samples = [&self.reference.1, &self.inclusions[trial.inclusion].1];
         if trial.with_inclusion == Interval::First {
@@ -209,17 +222,21 @@ impl<'a> Pairs<'a> {
             seed: self.arguments.seed,
         };
         let [first, second] = samples.map(|sample| self.felt(sample));
-        let chosen = observer.choose(&first?, &second?, number as u64);
+        let (Some(first), Some(second)) = (first?, second?) else {
+            return Ok(None);
+        };
+        let chosen = observer.choose(&first, &second, number as u64);
         let chosen = chosen.map_err(CliError::refused("the ideal observer"));
         Ok(Some(chosen?))
     }
 
-    /// A sample as it is felt.
-    fn felt(&self, table: &LoadedTable) -> Result<Felt, CliError> {
+    /// A sample as it is felt; `None` after a signal.
+    fn felt(&self, table: &LoadedTable) -> Result<Option<Felt>, CliError> {
         let table = table.table();
         let duration = Duration::from_secs(self.arguments.seconds);
         let device = open(self.arguments)?;
-        present(device, table, self.limits, duration, PATIENCE)
+        let stop = || self.stop.load(Ordering::Relaxed);
+        present(device, table, self.limits, duration, PATIENCE, stop)
             .map_err(|error| CliError::Check(error.to_string()))
     }
 
@@ -230,19 +247,28 @@ impl<'a> Pairs<'a> {
             let prompt = format!(
                 "pair {pair} of {total}, {name} sample: let go of the deadman, press Enter (q ends), then hold it "
             );
-            match line(&prompt).as_deref() {
-                None | Some("q") => return Ok(None),
-                Some(_) => self.felt(sample)?,
-            };
+            let is_asked = self.line(&prompt).is_some_and(|line| line != "q");
+            if !is_asked || self.felt(sample)?.is_none() {
+                return Ok(None);
+            }
         }
         loop {
-            match line("which sample had the inclusion? 1 or 2 (q ends) ").as_deref() {
+            let answer = self.line("which sample had the inclusion? 1 or 2 (q ends) ");
+            match answer.as_deref() {
                 Some("1") => return Ok(Some(Interval::First)),
                 Some("2") => return Ok(Some(Interval::Second)),
                 Some("q") | None => return Ok(None),
-                Some(_) => eprintln!("press 1, 2 or q, then Enter"),
+                Some(_) => say("press 1, 2 or q, then Enter\n"),
             }
         }
+    }
+
+    /// A line from the keyboard; `None` at its end, or after a signal.
+    fn line(&self, prompt: &str) -> Option<String> {
+        say(prompt);
+        let line = next(self.keyboard.as_ref()?, &self.stop)?.ok()?;
+        // More than a line is no person.
+        (line.len() < LONGEST_LINE).then(|| line.trim().to_string())
     }
 }
 
@@ -255,15 +281,4 @@ fn open(arguments: &ExperimentArguments) -> Result<Box<dyn HapticDevice + Send>,
 }
 
 /// The longest line that is read from the keyboard, bytes.
-const LONGEST_LINE: u64 = 1024;
-
-/// A line from the keyboard; `None` at its end.
-fn line(prompt: &str) -> Option<String> {
-    eprint!("{prompt}");
-    let mut text = String::new();
-    let mut keyboard = std::io::stdin().lock().take(LONGEST_LINE);
-    // More than a line is no person.
-    let is_line = |length: usize| (1..LONGEST_LINE).contains(&(length as u64));
-    let length = keyboard.read_line(&mut text).ok()?;
-    is_line(length).then(|| text.trim().to_string())
-}
+const LONGEST_LINE: usize = 1024;

@@ -109,7 +109,7 @@ fn read(lines: &str) -> Result<Experiment, Refusal> {
         subject: "1".into(),
         condition: "FEM data".into(),
         inclusions: vec!["2.6".into(), "8.6".into()],
-    });
+    })?;
     take_lines(lines.as_bytes(), Path::new(FILE), 1, |line| {
         experiment.take(line)
     })?;

@@ -72,6 +72,21 @@ pub(super) fn column(place: &str, name: &str) -> Result<Column, Refusal> {
     Ok(Column { name, depth })
 }
 
+/// The inclusions of these names, each of which stands at a place.
+pub(super) fn columns<'a>(
+    names: impl IntoIterator<Item = (String, &'a str)>,
+) -> Result<Vec<Column>, Refusal> {
+    let mut columns: Vec<Column> = Vec::new();
+    for (place, name) in names {
+        let column = column(&place, name)?;
+        if columns.iter().any(|other| other.name == name) {
+            return Err(refused(&place, name, "each inclusion once"));
+        }
+        columns.push(column);
+    }
+    Ok(columns)
+}
+
 /// A name in a column, which can be printed.
 pub(super) fn plain(column: &str, name: &str) -> Result<String, Refusal> {
     if name.is_empty() || !is_plain(name) {

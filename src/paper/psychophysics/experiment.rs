@@ -10,6 +10,7 @@
 use palpate::refusal::{Refusal, shortened};
 use serde::{Deserialize, Serialize};
 
+use super::counts::columns;
 use super::{Trial, plan};
 
 /// What an experiment is: the first line of its journal.
@@ -48,12 +49,19 @@ pub struct Experiment {
 
 impl Experiment {
     /// An experiment without answers.
-    pub fn new(setup: Setup) -> Experiment {
-        Experiment {
+    ///
+    /// # Errors
+    /// An inclusion whose name no table of counts may have, or that is there twice.
+    ///
+    /// Implements: PSY-004.
+    pub fn new(setup: Setup) -> Result<Experiment, Refusal> {
+        let names = setup.inclusions.iter();
+        columns(names.map(|name| ("inclusion".into(), name.as_str())))?;
+        Ok(Experiment {
             plan: plan(setup.seed, setup.inclusions.len(), setup.trials),
             setup,
             answers: Vec::new(),
-        }
+        })
     }
 
     /// The next pair, with its number from 0; `None` when all are answered.

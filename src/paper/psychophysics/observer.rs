@@ -8,7 +8,7 @@ use super::Interval;
 use palpate::detect::theta_of_record;
 use palpate::force::Force;
 use palpate::force_map::{ForceTable, Hypotheses};
-use palpate::hid::{Counters, End, HapticDevice, Session};
+use palpate::hid::{Counters, DeviceState, End, HapticDevice, Session};
 use palpate::refusal::Refusal;
 use palpate::servo::{Limits, Table};
 use palpate::stats::random::Generator;
@@ -30,10 +30,10 @@ pub struct Felt {
 }
 
 /// Plays `table` on `device` for `duration` of the device's time from the first force on, at most
-/// `patience` from the beginning.
+/// `patience` from the beginning. `None` if `stop` said so before.
 ///
 /// # Errors
-/// The device was refused, or ended early.
+/// The device was refused, or ended early; nothing was played.
 ///
 /// Implements: PSY-010.
 pub fn present<D: HapticDevice>(
@@ -42,7 +42,8 @@ pub fn present<D: HapticDevice>(
     limits: Limits,
     duration: Duration,
     patience: Duration,
-) -> Result<Felt, Refusal> {
+    stop: impl Fn() -> bool,
+) -> Result<Option<Felt>, Refusal> {
     let mut session = Session::begin(device, table, limits).map_err(refused)?;
     let capabilities = *session.capabilities();
     let metres = f64::from(capabilities.position_unit_nm) * 1e-9;
@@ -60,11 +61,21 @@ pub fn present<D: HapticDevice>(
             forces.normal.push(f64::from(force.normal) * newtons);
         }
         let until = began.map_or(patience, |began| began + duration);
-        cycle.written < until
+        cycle.written < until && !stop()
     });
     felt.counters = session.counters();
     match end {
-        End::Asked => Ok(felt),
+        End::Asked if stop() => Ok(None),
+        // A signal that interrupts a read is the wish to stop, where there is one.
+        End::Device(error) if error.state == DeviceState::Interrupted && stop() => Ok(None),
+        End::Asked if began.is_none() => {
+            let found = format!("nothing was played within {} s", patience.as_secs());
+            Err(Refusal::state(
+                found,
+                "hold the deadman while a sample is played",
+            ))
+        }
+        End::Asked => Ok(Some(felt)),
         end => Err(refused(end)),
     }
 }

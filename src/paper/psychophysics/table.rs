@@ -8,7 +8,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::counts::{Column, Condition, MOST_TRIALS, Subject, column, plain, refused};
+use super::counts::{Column, Condition, MOST_TRIALS, Subject, columns, plain, refused};
 use super::trials;
 use palpate::csv::{fields, header_and_rows, wrong_header};
 use palpate::refusal::Refusal;
@@ -118,16 +118,8 @@ fn inclusions(header: &str) -> Result<Vec<Column>, Refusal> {
     let fields: Vec<&str> = header.split(',').map(str::trim).collect();
     let rest = fields.strip_prefix(&KEYS).filter(|rest| !rest.is_empty());
     let names = rest.ok_or_else(|| wrong_header(header, EXPECTED_HEADER))?;
-    let mut inclusions: Vec<Column> = Vec::new();
-    for (number, name) in (KEYS.len() + 1..).zip(names) {
-        let place = format!("header, column {number}");
-        let column = column(&place, name)?;
-        if inclusions.iter().any(|other| other.name == *name) {
-            return Err(refused(&place, name, "each inclusion once"));
-        }
-        inclusions.push(column);
-    }
-    Ok(inclusions)
+    let place = |(number, &name)| (format!("header, column {number}"), name);
+    columns((KEYS.len() + 1..).zip(names).map(place))
 }
 
 /// The condition and the subject of a row.

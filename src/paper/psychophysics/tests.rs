@@ -133,11 +133,27 @@ mod observer {
 
     /// One sample of half a second, felt through the shipped loop.
     fn felt(table: &LoadedTable) -> Felt {
+        presented(table, Duration::from_secs(1), false)
+            .unwrap()
+            .unwrap()
+    }
+
+    fn presented(table: &LoadedTable, patience: Duration, stop: bool) -> Result<Option<Felt>> {
         let trajectory = Trajectory::probing(3e-3, 8e-3, Duration::from_millis(200));
         let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, trajectory, vec![]);
         let limits = Limits::new(4.0, 0.05, 0.5, 20).unwrap();
-        let (half, second) = (Duration::from_millis(500), Duration::from_secs(1));
-        present(device, table.table(), limits, half, second).unwrap()
+        let half = Duration::from_millis(500);
+        present(device, table.table(), limits, half, patience, || stop)
+    }
+
+    // Verifies: PSY-010.
+    #[test]
+    fn nothing_is_felt_where_nothing_was_played() {
+        let table = LoadedTable::new(&map(0.0)).unwrap();
+        let refused = presented(&table, Duration::ZERO, false).unwrap_err();
+        let found = "nothing was played within 0 s; hold the deadman while a sample is played";
+        assert_eq!(refused.to_string(), found);
+        assert_eq!(presented(&table, Duration::from_secs(1), true), Ok(None));
     }
 
     // The paper's theory closed: through device, servo, table and noise, the ideal observer is right

@@ -9,6 +9,7 @@ fn experiment(trials: usize) -> Experiment {
         condition: "FEM data".into(),
         inclusions: ["2.6", "4.6", "6.6", "8.6"].map(String::from).into(),
     })
+    .unwrap()
 }
 
 // Verifies: PSY-003, PSY-004.
