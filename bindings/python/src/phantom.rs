@@ -297,7 +297,7 @@ impl Phantom {
             let text = solved.and_then(|solution| model.vtu(&solution));
             text.map_err(refused)
         });
-        Ok(std::fs::write(path, text?)?)
+        Ok(palpate::file::write(&path, &text?)?)
     }
 
     /// The force map over depths and lateral positions, as solve but for the last digits, and faster.
