@@ -117,6 +117,26 @@ fn a_curve_that_cannot_be_judged_writes_no_phantom() {
     assert!(place.read("both.svg").contains("press deeper"));
 }
 
+// Verifies: CLI-015, CLI-003, CLI-176.
+#[test]
+fn strain_is_judged_down_to_the_depth_of_the_curve() {
+    let place = Place::new("calibrate-strain");
+    let calibrate = |depth: &str| {
+        let curve =
+            format!("solve --phantom 2.6 --depths-mm 0:{depth}:0.05 --laterals-mm 0 --format csv");
+        place.write("curve.csv", place.run(&curve).stdout);
+        place.run("calibrate curve.csv --phantom 2.6 --contact 0 --out gel.toml")
+    };
+    // The gel is turned inside out at 4.5 mm, which only its table reaches.
+    let output = calibrate("4.3");
+    assert!(output.status.success(), "{output:?}");
+    let output = calibrate("6");
+    assert_eq!(output.status.code(), Some(4), "{output:?}");
+    assert!(text(&output.stdout).contains("Young's modulus"));
+    assert!(text(&output.stderr).contains("phantom 2.6: det"));
+    assert!(place.at("gel.toml").exists());
+}
+
 // Verifies: CLI-176, CLI-003.
 #[test]
 fn what_is_asked_wrongly_is_refused() {

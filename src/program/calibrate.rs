@@ -9,7 +9,7 @@ use super::error::refuse;
 use super::layout::LayoutArguments;
 use super::numbers::{for_each, length, position};
 use super::output::{Envelope, note, write};
-use super::solve::{phantom, tell_large_strain};
+use super::solve::{phantom, tell_large_strain_to};
 use super::{CliError, Format};
 use palpate::calibration::{
     Calibration, CalibrationQuestion, Curve, Elastic, Indentation, calibrate as fitted, calibrated,
@@ -64,7 +64,7 @@ pub struct CalibrateArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-176, CLI-017, CLI-003.
+/// Implements: CLI-176, CLI-017, CLI-003, CLI-015.
 pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), CliError> {
     let phantom = arguments.phantom.as_deref().map(phantom).transpose()?;
     let layers = layers(arguments, phantom.as_ref())?;
@@ -96,16 +96,25 @@ pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), CliError> {
         let gel = phantom.as_ref().map(|phantom| (phantom, indentation));
         let name = phantom.as_ref().map_or("", Phantom::name);
         let calibration = fitted(curve, CalibrationQuestion { gel, contact });
-        let calibration = calibration.map_err(CliError::fem(name))?;
-        if let Elastic::Gel(gel) = &calibration.elastic {
-            tell_large_strain(&gel.map, name)?;
-        }
-        found.push(calibration);
+        found.push(calibration.map_err(CliError::fem(name))?);
     }
     if let Some(path) = &arguments.figure {
         write(path, &calibration_figure(&found)?)?;
     }
-    tell(arguments, &found, (phantom.as_ref(), &layers))
+    tell(arguments, &found, (phantom.as_ref(), &layers))?;
+    let strains: Vec<_> = found.iter().map(strain).collect();
+    strains.into_iter().collect()
+}
+
+/// Warns where the strain is too large for the model, down to the greatest depth of a curve.
+///
+/// Implements: CLI-015, CLI-003.
+fn strain(of: &Calibration<'_>) -> Result<(), CliError> {
+    let (Elastic::Gel(gel), Some(contact)) = (&of.elastic, of.contact()?) else {
+        return Ok(());
+    };
+    let deepest = of.curve.deepest() - contact.estimate;
+    tell_large_strain_to(deepest, &gel.map, gel.phantom.name())
 }
 
 /// The numbers of the layers that are named.

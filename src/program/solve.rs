@@ -13,7 +13,7 @@ use super::progress::{bar, tell_large_mesh};
 use palpate::decimal::{format_scaled, mm};
 use palpate::fem::certify::certified_map;
 use palpate::fem::{Contact, MESH_SIZE, Model, Pose, PoseSolution, SMALL_STRAIN_LIMIT};
-use palpate::force_map::{ForceMap, SmallestDet};
+use palpate::force_map::{ForceMap, SAME_POSITION, SmallestDet};
 use palpate::phantom::{BUILTIN_NAMES, Phantom, Strain};
 
 /// Arguments of `palpate solve`.
@@ -229,10 +229,25 @@ fn write_series(list: &Path, series: &[String]) -> Result<(), CliError> {
 ///
 /// Implements: CLI-015, CLI-003.
 pub fn tell_large_strain(map: &ForceMap, phantom: &str) -> Result<(), CliError> {
+    tell_large_strain_to(f64::INFINITY, map, phantom)
+}
+
+/// As [`tell_large_strain`], of the rows down to the depth `deepest`, m.
+///
+/// # Errors
+/// As [`tell_large_strain`].
+///
+/// Implements: CLI-015, CLI-003.
+pub fn tell_large_strain_to(deepest: f64, map: &ForceMap, phantom: &str) -> Result<(), CliError> {
     let Some(certificate) = map.certificate() else {
         return Ok(());
     };
-    tell_smallest_det(certificate.smallest_det, certificate.law.is_none(), phantom)
+    let table = map.table();
+    let is_asked = |depth: &f64| *depth <= deepest + SAME_POSITION;
+    let asked = &table.depths()[..table.depths().partition_point(is_asked)];
+    let smallest = SmallestDet::of(&certificate.min_det, asked, table.laterals());
+    let tell = |of| tell_smallest_det(of, certificate.law.is_none(), phantom);
+    smallest.map_or(Ok(()), tell)
 }
 
 fn tell_smallest_det(
