@@ -83,7 +83,13 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
         theories,
     };
     let name = |map: &ForceMap| map.phantom().map_or("", Phantom::name).to_string();
-    let strains = run.reference_and_maps();
+    let is_new = |map: &&ForceMap| {
+        let mut own = run.reference_and_maps();
+        own.all(|own| own.phantom() != map.phantom())
+    };
+    let theories = run.theories.iter();
+    let theories = theories.flat_map(|of| std::iter::once(&of.reference).chain(&of.maps));
+    let strains = run.reference_and_maps().chain(theories.filter(is_new));
     let strains: Vec<_> = strains
         .map(|map| tell_large_strain(map, &name(map)))
         .collect();
