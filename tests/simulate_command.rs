@@ -1,6 +1,6 @@
 //! `palpate simulate`, end to end.
 
-use crate::program::Place;
+use crate::program::{Place, text};
 use palpate_asserts::assert_has;
 
 const SHAKEN: &str = "--depths-mm 1,2 --from-mm -3 --to-mm 3 --hand 0.05,5,500 --tremor-mm 0.05 --relaxation 0.2,1 \
@@ -59,7 +59,7 @@ fn a_record_is_the_same_alone_and_among_others_from_a_phantom_and_from_its_map()
             "--relaxation needs a share below 1 and a time above 0",
         ),
         (
-            "--depths-mm 5",
+            "--depths-mm 5 --records 2 --out refused",
             "depth 5.0 mm is outside the map, which has 0.0 to 3.0 mm",
         ),
         (
@@ -82,6 +82,31 @@ fn a_record_is_the_same_alone_and_among_others_from_a_phantom_and_from_its_map()
             expected,
         );
     }
+    // The same command may be tried again.
+    assert!(!place.at("refused").exists());
+}
+
+// Verifies: CLI-015, CLI-003, CLI-231.
+#[test]
+fn a_path_that_turns_the_gel_inside_out_is_an_error_and_one_far_away_is_refused() {
+    let place = Place::new("simulate-strain");
+    let simulate = |depth: &str| {
+        place.run(&format!(
+            "simulate --phantom 2.6 --from-mm 0 --to-mm 1 --depths-mm {depth}"
+        ))
+    };
+    // The map reaches 5 mm, where palpate solve finds a gel inside out, but the path does not.
+    let output = simulate("4");
+    assert!(output.status.success(), "{output:?}");
+    let told = text(&output.stderr);
+    assert_has(told, "warning: phantom 2.6|at depth 4.0 mm");
+    let output = simulate("5");
+    assert_eq!(output.status.code(), Some(4), "{output:?}");
+    assert_has(text(&output.stderr), "phantom 2.6|inside out");
+    assert_eq!(text(&output.stdout).lines().count(), 12);
+    // As it is asked, not the first pose on the way there.
+    let refused = place.refused("simulate --phantom 2.6 --depths-mm 1000");
+    assert_has(&refused, "phantom 2.6: depth_mm = 1000.0, but must be");
 }
 
 // Verifies: CLI-235.

@@ -1,6 +1,7 @@
 //! `palpate simulate`: records of a path over a gel (`spec/simulation.md`).
 
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path as FilePath, PathBuf};
 
 use clap::Args;
 
@@ -10,7 +11,7 @@ use super::error::refuse;
 use super::numbers::{at_least_0, length_or_zero, newtons_or_zero, several, share_below_1};
 use super::output::{make_folder, print, write_new};
 use super::path::PathArguments;
-use super::solve::phantom;
+use super::solve::{phantom, tell_large_strain_to};
 use palpate::fem::{Contact, MESH_SIZE, Model};
 use palpate::force_map::ForceMap;
 use palpate::simulation::{Hand, Motion, Path, Sensor, Simulation, Tremor};
@@ -92,7 +93,7 @@ struct SensorArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-230, CLI-231, CLI-232.
+/// Implements: CLI-230, CLI-231, CLI-232, CLI-015.
 pub fn simulate(arguments: &SimulateArguments) -> Result<(), CliError> {
     if arguments.records > 1 && arguments.out.is_none() {
         refuse!("several records need --out DIR");
@@ -103,9 +104,10 @@ pub fn simulate(arguments: &SimulateArguments) -> Result<(), CliError> {
     let Some(path) = arguments.path.path()? else {
         refuse!("give --depths-mm or --path");
     };
-    let map = match (&arguments.map, &arguments.phantom) {
+    let solved = arguments.phantom.as_deref();
+    let map = match (&arguments.map, solved) {
         (Some(file), _) => ForceMap::read(file)?,
-        (None, name) => map(name.as_deref().unwrap_or_default(), &path)?,
+        (None, name) => map(name.unwrap_or_default(), &path)?,
     };
     let (motion, sensor) = (&arguments.motion, &arguments.sensor);
     let simulation = Simulation {
@@ -121,15 +123,32 @@ pub fn simulate(arguments: &SimulateArguments) -> Result<(), CliError> {
         let record = simulation.record(number.into())?;
         Ok(record.to_csv(!sensor.no_depths))
     };
-    let Some(folder) = &arguments.out else {
-        return print(&record(1)?);
-    };
+    match &arguments.out {
+        None => print(&record(1)?)?,
+        Some(folder) => write_all(folder, arguments.records, record)?,
+    }
+    let (_, deepest) = path.extent();
+    solved.map_or(Ok(()), |name| tell_large_strain_to(deepest, &map, name))
+}
+
+/// Writes the records into a new folder, or leaves none where one is refused.
+///
+/// Implements: CLI-230, CLI-232.
+fn write_all(
+    folder: &FilePath,
+    records: u32,
+    record: impl Fn(u32) -> Result<String, CliError>,
+) -> Result<(), CliError> {
+    let file = |number| folder.join(format!("record-{number:04}.csv"));
     make_folder(folder)?;
-    for number in 1..=arguments.records {
-        write_new(
-            &folder.join(format!("record-{number:04}.csv")),
-            &record(number)?,
-        )?;
+    for number in 1..=records {
+        let written = record(number).and_then(|text| write_new(&file(number), &text));
+        if written.is_err() {
+            // What is left would block another try; a folder with files of others stays.
+            (1..number).for_each(|number| drop(fs::remove_file(file(number))));
+            let _ = fs::remove_dir(folder);
+        }
+        written?;
     }
     Ok(())
 }
@@ -138,6 +157,11 @@ pub fn simulate(arguments: &SimulateArguments) -> Result<(), CliError> {
 fn map(name: &str, path: &Path) -> Result<ForceMap, CliError> {
     let phantom = phantom(name)?;
     let ([low, high], depth) = path.extent();
+    // Before the poses are laid out: a place far away has billions of them on the way.
+    for lateral in [low, high] {
+        let pose = phantom.check_pose(depth, lateral);
+        pose.map_err(CliError::refused(format!("phantom {}", phantom.name())))?;
+    }
     let [first, last] = [(low - MARGIN) / STEP, (high + MARGIN) / STEP];
     let axis = |first: f64, last: f64| -> Vec<f64> {
         let entries = first.floor() as i32..=last.ceil() as i32;
