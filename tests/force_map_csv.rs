@@ -96,6 +96,9 @@ fn order_comments_blanks_and_line_ends_do_not_matter() {
     let noisy = format!("\u{feff}# a gel, 1\n\n  # b\r\n{lines}\n\t\n#");
     assert_eq!(read(&noisy.replace(',', " ,\t")), Ok(table()));
     assert_eq!(read(&EXAMPLE.replace("1.5,0.0", "1.5,-0")), Ok(table()));
+    // A tenth of a nanometre away.
+    let away = EXAMPLE.replace("1.5,0.0", "1.5000001,0.0000001");
+    assert_eq!(read(&away), Ok(table()));
 }
 
 // Verifies: MAP-026, MAP-033.

@@ -151,10 +151,13 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
     assert_has(&message, "map-none.json: this map was computed");
     // What the laboratory's columns hold, said once.
     let names = csv.replace("normal_force_n", "Cell").replace("0.6", "-600");
-    here.write("lab.csv", names.replace("0.5,", "-500,"));
+    let names = names.replace("0.5,", "-500,");
+    here.write("lab.CSV", names.replace(",lateral_force_n", ",fx"));
     let columns = "columns = { normal = \"-Cell[mN]\" }\n";
-    here.write("run.toml", columns.to_string() + &config("lab.csv"));
-    here.succeed("run --config run.toml --out lab");
+    here.write("run.toml", columns.to_string() + &config("lab.CSV"));
+    let output = here.run("run --config run.toml --out lab");
+    let told = "note: lab.CSV: column \"fx\" is read as lateral_force_n";
+    assert_has(text(&output.stderr), told);
     let [own, lab] = ["palpate-out/report.html", "lab/report.html"].map(|page| here.read(page));
     let figure = |page: &str, name: &str| {
         let (_, after) = page
@@ -162,7 +165,7 @@ fn a_measured_map_is_shown_and_a_computed_one_refused() {
             .unwrap();
         after.split_once("</figure>").unwrap().0.len()
     };
-    assert_eq!(figure(&own, "gel.csv"), figure(&lab, "lab.csv"));
+    assert_eq!(figure(&own, "gel.csv"), figure(&lab, "lab.CSV"));
     here.write("run.toml", "columns = { normal = 3 }\n");
     assert_has(
         &here.refused("run --config run.toml"),

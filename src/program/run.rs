@@ -17,7 +17,7 @@ use palpate::csv::Layout;
 use palpate::fem::certify::certified_map;
 use palpate::fem::{FemError, Model};
 use palpate::file::read;
-use palpate::force_map::{ForceMap, ForceTable, Measurement, Source};
+use palpate::force_map::ForceMap;
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 use palpate::robust::{GelChanges, GelUncertainty};
@@ -101,16 +101,8 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
 ///
 /// Implements: CLI-031, CLI-174.
 fn measured_map(path: &Path, layout: &Layout) -> Result<ForceMap, CliError> {
-    if path.extension() == Some("csv".as_ref()) {
-        let read = read(path, |text, file| {
-            ForceTable::from_csv_with_notes(text, file, layout)
-        });
-        let ((table, notes), file) = (read?, path.display().to_string());
-        notes.iter().for_each(|text| note(&file, text));
-        let source = Source::Measured(Measurement::new(&file, ""));
-        return Ok(ForceMap::new(source, None, table)?);
-    }
-    let map = ForceMap::read(path)?;
+    let (map, notes) = ForceMap::read_as(path, Some(layout))?;
+    notes.iter().for_each(|text| note(path.display(), text));
     if map.certificate().is_some() {
         let reason = "this map was computed; 'measured' takes measured maps, as palpate import-map writes them";
         return Err(CliError::refused(path.display())(reason));

@@ -1,7 +1,7 @@
 //! Measured force maps as CSV (`spec/force-map.md`).
 
 use super::grid::{Gridded, gridded};
-use super::{ForceMap, ForceTable, Matrix, Measurement, Source, increasing};
+use super::{ForceMap, ForceTable, Matrix, Measurement, SAME_POSITION, Source, increasing};
 use crate::csv::{Column, Layout, Rows};
 use crate::decimal::{format_scaled, mm};
 use crate::phantom::Phantom;
@@ -14,8 +14,9 @@ const COLUMNS: [Column; 4] = [
     &[&[("normal_force_n", 0), ("normal_force_mn", -3)]],
     &[&[("lateral_force_n", 0), ("lateral_force_mn", -3)]],
 ];
-/// The headers that are right, for a person.
-const EXPECTED_HEADER: &str = "depth_mm,lateral_mm,normal_force_n,lateral_force_n, in any order, lengths also as _m, forces also as _mn, or say with --columns what each holds";
+/// The headers that are right, for a person, and what else there is where the user may state a layout.
+const EXPECTED_HEADER: &str = "depth_mm,lateral_mm,normal_force_n,lateral_force_n, in any order, lengths also as _m, forces also as _mn";
+const OR_STATED: &str = ", or say with --columns or [columns] what each holds";
 
 impl ForceMap {
     /// The measured map in `text`, the content of `file`. The map records the file's name without
@@ -42,9 +43,20 @@ impl ForceMap {
         note: &str,
         phantom: Option<Phantom>,
     ) -> Result<ForceMap, Refusal> {
-        let forces = ForceTable::from_csv(text, file)?;
+        Ok(ForceMap::read_csv(text, file, (note, phantom), None)?.0)
+    }
+
+    /// As [`ForceMap::from_csv`], in this layout if the user may state one, with the notes of the reader.
+    pub(super) fn read_csv(
+        text: &str,
+        file: &str,
+        (note, phantom): (&str, Option<Phantom>),
+        layout: Option<&Layout>,
+    ) -> Result<(ForceMap, Vec<String>), Refusal> {
+        let (forces, notes) = ForceTable::read_csv(text, file, layout)?;
         let source = Source::Measured(Measurement::new(file, note));
-        ForceMap::new(source, phantom, forces).map_err(|refusal| refusal.in_file(file))
+        let map = ForceMap::new(source, phantom, forces);
+        Ok((map.map_err(|refusal| refusal.in_file(file))?, notes))
     }
 }
 
@@ -74,7 +86,7 @@ impl ForceTable {
     ///
     /// Implements: MAP-030, MAP-032, MAP-033, MAP-041.
     pub fn from_csv(text: &str, file: &str) -> Result<ForceTable, Refusal> {
-        Ok(ForceTable::from_csv_with_notes(text, file, &Layout::default())?.0)
+        Ok(ForceTable::read_csv(text, file, None)?.0)
     }
 
     /// As [`ForceTable::from_csv`], of a file in this layout, and what a person should know of how the text was read, such as the
@@ -100,6 +112,14 @@ impl ForceTable {
         file: &str,
         layout: &Layout,
     ) -> Result<(ForceTable, Vec<String>), Refusal> {
+        ForceTable::read_csv(text, file, Some(layout))
+    }
+
+    fn read_csv(
+        text: &str,
+        file: &str,
+        layout: Option<&Layout>,
+    ) -> Result<(ForceTable, Vec<String>), Refusal> {
         let on_grid = || {
             let (table, has_lateral) = read(text, layout, false)?;
             Ok((on_a_grid(table.rows, has_lateral)?, table.notes))
@@ -121,7 +141,7 @@ impl ForceTable {
         steps: [f64; 2],
     ) -> Result<(Gridded, Vec<String>), Refusal> {
         let on_grid = || {
-            let (table, has_lateral) = read(text, layout, true)?;
+            let (table, has_lateral) = read(text, Some(layout), true)?;
             let samples: Vec<_> = table.rows.iter().map(|(_, sample)| *sample).collect();
             Ok((gridded(&samples, has_lateral, steps)?, table.notes))
         };
@@ -132,8 +152,15 @@ impl ForceTable {
 /// The rows of a file, whether they are samples that may lack a number, and whether they have lateral forces; if not, a note says so.
 ///
 /// Implements: MAP-083.
-fn read(text: &str, layout: &Layout, are_samples: bool) -> Result<(Rows<4>, bool), Refusal> {
-    let read = Rows::parse_optional(text, COLUMNS, 3, EXPECTED_HEADER, layout, are_samples)?;
+fn read(
+    text: &str,
+    layout: Option<&Layout>,
+    are_samples: bool,
+) -> Result<(Rows<4>, bool), Refusal> {
+    let expected = format!("{EXPECTED_HEADER}{}", layout.map_or("", |_| OR_STATED));
+    let (none, required) = (Layout::default(), 3);
+    let layout = layout.unwrap_or(&none);
+    let read = Rows::parse_optional(text, COLUMNS, required, &expected, layout, are_samples)?;
     let (mut rows, [.., has_lateral]) = read;
     if !has_lateral {
         let note = "there is no lateral force: the map is of the normal force alone";
@@ -146,15 +173,24 @@ fn read(text: &str, layout: &Layout, are_samples: bool) -> Result<(Rows<4>, bool
 ///
 /// The poses are compared one by one, never laid out: n rows can span n² of them.
 ///
-/// Implements: MAP-033, MAP-037.
+/// Implements: MAP-033, MAP-037, MAP-002.
 fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>, has_lateral: bool) -> Result<ForceTable, Refusal> {
-    for (_, [depth, lateral, ..]) in &mut rows {
-        // Adding 0 makes −0 the same position as 0.
-        *depth += 0.0;
-        *lateral += 0.0;
+    for axis in [1, 0] {
+        rows.sort_by(|(_, a), (_, b)| a[axis].total_cmp(&b[axis]));
+        let mut last = f64::NEG_INFINITY;
+        for (_, row) in &mut rows {
+            if row[axis] - last > SAME_POSITION {
+                // Adding 0 makes −0 the same position as 0.
+                last = row[axis] + 0.0;
+            }
+            row[axis] = last;
+        }
     }
-    // Stable: the first line of a pose stays first.
-    rows.sort_by(|(_, a), (_, b)| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    // The first line of a pose first.
+    rows.sort_by(|(first, a), (second, b)| {
+        let order = a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
+        order.then(first.cmp(second))
+    });
     let named = |depth, lateral| {
         let (depth, lateral) = (mm(depth), mm(lateral));
         format!("row for depth {depth} mm, lateral {lateral} mm")

@@ -54,6 +54,7 @@ pub use smoothing::Smoothed;
 pub use table::{ForceTable, Matrix, SAME_POSITION, SYMMETRY_TOLERANCE, peak};
 pub(crate) use table::{check_axes, increasing};
 
+use crate::csv::Layout;
 use crate::phantom::Phantom;
 use crate::refusal::Refusal;
 
@@ -227,11 +228,24 @@ impl ForceMap {
     ///
     /// Implements: MAP-026.
     pub fn read(path: &Path) -> Result<ForceMap, Refusal> {
+        Ok(ForceMap::read_as(path, None)?.0)
+    }
+
+    /// As [`ForceMap::read`], of CSV in this layout where the user may state one, and what a person should know of how it was read.
+    ///
+    /// # Errors
+    /// As [`ForceMap::read`] and [`ForceTable::from_csv_with_notes`].
+    ///
+    /// Implements: MAP-026, MAP-044, MAP-046.
+    pub fn read_as(
+        path: &Path,
+        layout: Option<&Layout>,
+    ) -> Result<(ForceMap, Vec<String>), Refusal> {
         let is_csv = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("csv");
         let is_csv = path.extension().is_some_and(is_csv);
         crate::file::read(path, |text, file| match is_csv {
-            true => ForceMap::from_csv(text, file, "", None),
-            false => ForceMap::from_json(text, file),
+            true => ForceMap::read_csv(text, file, ("", None), layout),
+            false => Ok((ForceMap::from_json(text, file)?, Vec::new())),
         })
     }
 

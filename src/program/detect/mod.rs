@@ -414,7 +414,9 @@ impl<'a> TwoMaps<'a> {
 
 fn map(path: &Path) -> Result<ForceMap, CliError> {
     if path.exists() {
-        return Ok(ForceMap::read(path)?);
+        let (map, notes) = ForceMap::read_as(path, None)?;
+        notes.iter().for_each(|text| note(path.display(), text));
+        return Ok(map);
     }
     // A built-in phantom has a name elsewhere, but its forces depend on depths and mesh.
     refuse!(
