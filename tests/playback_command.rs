@@ -165,7 +165,8 @@ fn cycles_of_another_loop_are_judged() {
         let error = failed(&here, &format!("timing --from many {options}"));
         assert!(error.starts_with(&format!("{missed}{reason}")), "{error}");
     };
-    told("", ": p99.9 is at least 1200");
+    // The histogram tells 1200 µs from what is 0.1 % less.
+    told("", ": p99.9 is at least 1199");
     told(
         "--percentile 99 --allowed-misses 20",
         "; at most 20 are allowed",

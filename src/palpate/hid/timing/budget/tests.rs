@@ -82,6 +82,30 @@ fn bounds_are_times_of_the_order() {
     assert!(near(judged.response_us.max, 20.0));
 }
 
+// Verifies: HID-064, HID-062.
+#[test]
+fn bounds_agree_with_the_budget_and_the_times() {
+    let seconds = |seconds: f64| Duration::from_secs_f64(seconds);
+    // No cycle, and each cycle, takes longer; the second is 1 ns beyond the budget.
+    for (time, budget) in [(1e-3, 1e-3), (1.000_001e-3, 1e-3), (500.0, 200.0)] {
+        let mut responses = Responses::new(Budget::of(seconds(budget)));
+        for _ in 0..4000 {
+            responses.record(seconds(time), None);
+        }
+        let judged = responses.judged().unwrap();
+        let (least, most) = (judged.at_least_us, judged.at_most_us.unwrap());
+        assert!(least <= 1e6 * time && 1e6 * time <= most, "{judged:?}");
+        assert!(
+            least / time > 0.999e6 && most / time < 1.001e6,
+            "{judged:?}"
+        );
+        match judged.outcome {
+            BudgetOutcome::Kept => assert!(most <= judged.budget_us, "{judged:?}"),
+            _ => assert!(least >= judged.budget_us, "{judged:?}"),
+        }
+    }
+}
+
 // Verifies: HID-064.
 #[test]
 fn percents_are_between_0_and_100() {
