@@ -13,22 +13,22 @@ use palpate::simulation::Path;
 #[group(skip)]
 pub struct PathArguments {
     /// Depths of the probe in mm, a pass for each in turn, there and back: a list such as 1,2,3,4
-    #[arg(long = "depths-mm", value_name = "LIST", value_parser = length, value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(long = "depths-mm", value_name = "LIST", value_parser = length, value_delimiter = ',', allow_hyphen_values = true, group = "way")]
     depths: Vec<f64>,
     /// Where a pass begins, in mm
-    #[arg(long = "from-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "-8")]
+    #[arg(long = "from-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "-8", requires = "depths")]
     from: f64,
     /// Where it ends, and the way back begins, in mm
-    #[arg(long = "to-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "8")]
+    #[arg(long = "to-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "8", requires = "depths")]
     to: f64,
     /// Speed of a pass in mm/s
-    #[arg(long = "speed-mm-s", value_name = "V", value_parser = velocity, allow_hyphen_values = true, default_value = "10")]
+    #[arg(long = "speed-mm-s", value_name = "V", value_parser = velocity, allow_hyphen_values = true, default_value = "10", requires = "depths")]
     speed: f64,
     /// Any other path: a CSV file with time_s, position_mm and depth_mm of waypoints
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["depths", "from", "to", "speed"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["depths", "from", "to", "speed"], group = "way")]
     path: Option<PathBuf>,
     /// Samples per second
-    #[arg(long, value_name = "HZ", value_parser = at_least_0, allow_hyphen_values = true, default_value = "100")]
+    #[arg(long, value_name = "HZ", value_parser = at_least_0, allow_hyphen_values = true, default_value = "100", requires = "way")]
     rate_hz: f64,
 }
 

@@ -60,6 +60,8 @@ impl Path {
     ///
     /// Implements: SIM-011.
     pub fn from_csv(text: &str, file: &str, rate: f64) -> Result<Path, Refusal> {
+        let found = format!("{rate} samples a second");
+        Refusal::state(found, "give a rate above 0").when(rate <= 0.0)?;
         let read = || {
             let table = Rows::parse_as(text, COLUMNS, EXPECTED, &Layout::default())?;
             for pair in table.rows.windows(2) {

@@ -103,6 +103,9 @@ fn a_path_of_waypoints_goes_straight_between_them() {
         let error = Path::from_csv(&format!("{header}{rows}"), "path.csv", 10.0).unwrap_err();
         assert!(error.to_string().contains(word), "{error}");
     }
+    for rate in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(Path::from_csv(text, "path.csv", rate).is_err(), "{rate}");
+    }
 }
 
 // Verifies: SIM-002.
