@@ -3,7 +3,6 @@
 mod file;
 mod records;
 
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use askama::Template;
@@ -77,21 +76,22 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
     let (sampler, shard) = (Sampler::new(&plan)?, arguments.shard);
     make_folder(&arguments.out)?;
     let path = shard.file(&arguments.out);
-    let of_shard = (0..sampler.design().samples()).filter(|&sample| shard.has(sample));
-    let mut left: BTreeSet<usize> = of_shard.collect();
-    let (total, mut failed) = (left.len(), 0);
+    let samples = 0..sampler.design().samples();
+    let mut is_left: Vec<bool> = samples.clone().map(|sample| shard.has(sample)).collect();
+    let count = |is_left: &[bool]| is_left.iter().filter(|is_left| **is_left).count();
+    let (total, mut failed) = (count(&is_left), 0);
     let header = Envelope::job("palpate-study-samples", Header { shard, plan: &plan });
     let part = Journal::open(path.clone(), &header, "palpate study run", |text| {
         let record = Record::parse(text, &sampler)?;
         let sample = record.sample;
-        if !left.remove(&sample) {
+        if !std::mem::take(&mut is_left[sample]) {
             let found = format!("sample {sample} appears twice or belongs to another shard");
             return Err(Refusal::state(found, ""));
         }
         failed += usize::from(record.is_failed());
         Ok(())
     })?;
-    let bar = resumed_bar(&path, total - left.len(), total, "samples");
+    let bar = resumed_bar(&path, total - count(&is_left), total, "samples");
     let compute = |sample: usize| {
         let outcome = match sampler.sample(sample) {
             Ok(values) => Outcome::Values(values),
@@ -102,7 +102,8 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
         bar.inc(1);
         Ok::<_, CliError>(usize::from(record.is_failed()))
     };
-    let computed = left.into_par_iter().map(compute);
+    let left = samples.into_par_iter().filter(|&sample| is_left[sample]);
+    let computed = left.map(compute);
     failed += computed.try_reduce(|| 0, |a, b| Ok(a + b))?;
     bar.finish_and_clear();
     print(&format!(
