@@ -122,9 +122,14 @@ fn circumstances(map: &ForceMap) -> Value {
 fn first_difference(key: &str, a: &Value, b: &Value) -> Option<(String, String, String)> {
     match (a, b) {
         (Value::Null, _) | (_, Value::Null) => None,
-        (Value::Object(a), Value::Object(b)) => a.iter().find_map(|(name, a)| {
+        (Value::Object(a), Value::Object(b)) => a.keys().chain(b.keys()).find_map(|name| {
             let key = format!("{key}{}{name}", if key.is_empty() { "" } else { "." });
-            first_difference(&key, a, b.get(name)?)
+            let said = |value: Option<&Value>| value.map_or("not given".into(), Value::to_string);
+            match (a.get(name), b.get(name)) {
+                (Some(a), Some(b)) => first_difference(&key, a, b),
+                // A file leaves out what has its default.
+                (a, b) => Some((key, said(a), said(b))),
+            }
         }),
         (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
             let mut entries = a.iter().zip(b).enumerate();

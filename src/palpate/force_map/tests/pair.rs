@@ -1,7 +1,7 @@
 //! Bands of discretization, and the two maps that are compared.
 
 use super::*;
-use crate::phantom::PhantomParts;
+use crate::phantom::{PhantomParts, Strain};
 
 /// A band for each force of [`table`].
 fn discretization() -> Discretization {
@@ -122,6 +122,14 @@ fn a_pair_of_maps_is_one_gel_without_and_with_an_inclusion() {
     other_gel("layer[0].material.poisson_ratio", softer);
     other_gel("layer", |p| p.layers.push(p.layers[0].clone()));
     other_gel("probe.radius_m", |p| p.probe.radius *= 0.9);
+    // Keys that one of the files leaves out.
+    other_gel("strain", |p| p.strain = Strain::Finite);
+    let fibrous = |p: &mut PhantomParts| p.layers[1].material.fibre_modulus = 5e4;
+    other_gel("layer[1].material.fibre_modulus_pa", fibrous);
+    assert_eq!(
+        refused(&without, &map(&fibrous)),
+        "phantom.layer[1].material.fibre_modulus_pa is 50000.0, but not given in the reference map; only the inclusions may differ"
+    );
     let solved = |name: &str, change: fn(&mut Certificate)| {
         let ForceMap { source, .. } = computed(change).unwrap();
         ForceMap::new(source, Phantom::builtin(name).ok(), table()).unwrap()
