@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Certificate, ForceMap, ForceTable, Matrix, Measurement, Source, of_phantom};
+use super::{Certificate, ForceMap, ForceTable, Matrix, Measurement, Source};
 use crate::file::{check_schema, from_json, to_json};
 use crate::phantom::{Phantom, PhantomParts};
 use crate::refusal::Refusal;
@@ -118,7 +118,7 @@ impl TryFrom<Document> for ForceMap {
             .phantom
             .map(Phantom::new)
             .transpose()
-            .map_err(of_phantom)?;
+            .map_err(|refusal| refusal.of_part("phantom"))?;
         ForceMap::of_version(document.program_version, source, phantom, table)
     }
 }

@@ -191,7 +191,8 @@ impl ForceMap {
         if let Some(phantom) = &phantom {
             for &depth in table.depths() {
                 for &lateral in table.laterals() {
-                    phantom.check_pose(depth, lateral).map_err(of_phantom)?;
+                    let stands = phantom.check_pose(depth, lateral);
+                    stands.map_err(|refusal| refusal.of_part("phantom"))?;
                 }
             }
         }
@@ -360,13 +361,5 @@ impl ForceMap {
             },
             measured => measured.clone(),
         }
-    }
-}
-
-/// Says that what a phantom of a map refuses is the phantom's.
-fn of_phantom(refusal: Refusal) -> Refusal {
-    Refusal {
-        key: format!("phantom: {}", refusal.key),
-        ..refusal
     }
 }

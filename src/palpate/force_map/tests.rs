@@ -2,6 +2,7 @@ use crate::force::Force;
 use proptest::prelude::*;
 
 use super::*;
+use crate::phantom::Geometry;
 use palpate_asserts::{assert_cases, assert_error, axis, row, seeded};
 
 mod pair;
@@ -208,6 +209,17 @@ fn a_map_fits_its_phantom() {
     assert_error(
         ForceMap::new(source(), Some(phantom), too_wide),
         "phantom: lateral_mm = 11.1, but must be [..]",
+    );
+    let sphere = Phantom::builtin("6.6").unwrap().changed(|parts| {
+        parts.geometry = Geometry::Axisymmetric;
+        parts.probe.length = 2.0 * parts.probe.radius;
+    });
+    let text = measured(Some(sphere.unwrap()), axes(&[0.004], &[0.0]).unwrap()).to_json();
+    let oblique = "\"fibre_modulus_pa\": 5.0, \"fibre_angle_deg\": 30.0, \"youngs_modulus_pa\"";
+    let text = text.replacen("\"youngs_modulus_pa\"", oblique, 1);
+    assert_error(
+        ForceMap::from_json(&text, "map.json"),
+        "map.json: phantom: an axisymmetric phantom that is not its own mirror image; [..]",
     );
 }
 
