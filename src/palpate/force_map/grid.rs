@@ -93,17 +93,12 @@ struct AtPose {
     squares: [f64; 2],
 }
 
-/// A sample near a pose: its distances from it over the steps, and its weight.
+/// A sample near a pose: its distances from it over the steps, its weight, and whether no pose is nearer.
 struct Near<'s> {
     place: [f64; 2],
     weight: f64,
+    is_nearest: bool,
     sample: &'s Sample,
-}
-
-impl Near<'_> {
-    fn is_nearest(&self) -> bool {
-        self.place.iter().all(|u| u.abs() <= 0.5)
-    }
 }
 
 /// The samples less than a step away from a pose.
@@ -113,11 +108,13 @@ fn near(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Vec<Near<'_>> {
         rest * rest * rest
     };
     let near = samples.iter().filter_map(|sample| {
-        let place = [0, 1].map(|axis| sample[axis] / steps[axis] - pose[axis] as f64);
+        let numbers = [0, 1].map(|axis| sample[axis] / steps[axis]);
+        let place = [0, 1].map(|axis| numbers[axis] - pose[axis] as f64);
         let is_near = place.iter().all(|u| u.abs() < 1.0);
         is_near.then(|| Near {
             place,
             weight: tricube(place[0].abs()) * tricube(place[1].abs()),
+            is_nearest: numbers.map(|number| libm::round(number) as i64) == pose,
             sample,
         })
     });
@@ -127,7 +124,7 @@ fn near(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Vec<Near<'_>> {
 /// Implements: MAP-080.
 fn at_pose(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Result<AtPose, Refusal> {
     let near = near(samples, pose, steps);
-    if !near.iter().any(Near::is_nearest) {
+    if !near.iter().any(|of| of.is_nearest) {
         let [depth, lateral] = [0, 1].map(|axis| mm(pose[axis] as f64 * steps[axis]));
         let found = format!("no sample near depth {depth} mm, lateral {lateral} mm of the grid");
         return Err(Refusal::state(found, "choose a coarser grid"));
@@ -161,7 +158,7 @@ fn at_pose(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Result<AtPose
             level + slopes[0] * depth + slopes[1] * lateral
         };
         fit.forces[channel] = plane([0.0; 2]);
-        let nearest = near.iter().filter(|of| of.is_nearest());
+        let nearest = near.iter().filter(|of| of.is_nearest);
         let left = nearest.map(|of| force(of) - plane(of.place));
         fit.squares[channel] = left.map(|left| left * left).sum();
     }
@@ -265,6 +262,19 @@ mod tests {
         assert_eq!(
             (one.residual.normal, one.residual.lateral),
             (found.residual.normal, None)
+        );
+    }
+
+    // Verifies: MAP-081. Through the means of each place there is a line; what the two samples half a step away leave of it counts once.
+    #[test]
+    fn a_sample_between_two_poses_is_nearest_to_one() {
+        let sample = |(lateral, normal)| [1e-3, lateral, normal, 0.0];
+        let samples = [(0.0, 1.0), (0.5e-3, 1.5), (0.5e-3, 2.5), (1e-3, 3.0)].map(sample);
+        let found = gridded(&samples, false, [1e-3, 1e-3]).unwrap();
+        let residual = found.residual.normal.unwrap();
+        assert!(
+            (residual - (0.5f64 / 4.0).sqrt()).abs() < 1e-12,
+            "{residual}"
         );
     }
 
