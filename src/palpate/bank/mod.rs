@@ -118,14 +118,16 @@ impl Bank {
     /// probe, and a phantom with one inclusion; the reference holds these depths, and may hold others.
     ///
     /// # Errors
-    /// No maps; a map that is not the reference's gel with one inclusion, at other lateral positions or other depths; maps that are
-    /// no full grid of positions, depths, diameters and moduli; with the number of the map, from 0.
+    /// No maps; a map without lateral forces, or that is not the reference's gel with one inclusion, at other lateral positions or other
+    /// depths; maps that are no full grid of positions, depths, diameters and moduli; with the number of the map, from 0.
     ///
-    /// Implements: BNK-001, BNK-003.
+    /// Implements: BNK-001, BNK-003, MAP-084.
     pub fn new(reference: ForceMap, maps: Vec<ForceMap>) -> Result<Bank, Refusal> {
         let Some(first) = maps.first() else {
             return Err(Refusal::state("the bank has no maps", "give one at least"));
         };
+        let both = reference.table().both();
+        both.map_err(|refusal| refusal.of_part("reference"))?;
         let base = reference.table().at_depths(first.table().depths())?;
         let mut points = Vec::with_capacity(maps.len());
         for (number, map) in maps.iter().enumerate() {
@@ -218,6 +220,7 @@ impl Bank {
 /// The parameters of the one inclusion of `map`.
 fn check_map(reference: &ForceMap, map: &ForceMap, depths: &[f64]) -> Result<[f64; 4], Refusal> {
     check_gel(reference, map)?;
+    map.table().both()?;
     let Some([inclusion]) = map.phantom().map(Phantom::inclusions) else {
         let found = "its phantom has no inclusion, or several";
         return Err(Refusal::state(
