@@ -180,7 +180,7 @@ impl BankPlan {
         };
         let is_nearest = |depth: f64, beside: f64| {
             let mut others = self.probe_depths.iter().filter(|other| **other != depth);
-            others.all(|other| (beside - other).abs() >= BESIDE - SAME_POSITION)
+            others.all(|other| (beside - other).abs() >= (beside - depth).abs() - SAME_POSITION)
         };
         let around = |&depth: &f64| {
             let beside = [(depth - BESIDE).max(0.5 * depth), depth + BESIDE];

@@ -27,7 +27,7 @@ fn maps_in_any_order_make_a_grid_that_survives_its_file() {
     assert_eq!(Bank::from_json(&text, "bank.json").unwrap(), bank);
 }
 
-// Verifies: BNK-001, BNK-003.
+// Verifies: BNK-001, BNK-003, MAP-084.
 #[test]
 fn what_is_no_bank_is_refused() {
     type Change<'a> = &'a dyn Fn(&mut Vec<ForceMap>);
@@ -53,6 +53,18 @@ fn what_is_no_bank_is_refused() {
     let cut = |map: &ForceMap| map.at_laterals(&[0.0, 5e-4]).unwrap();
     let narrow = "maps[1]: its lateral positions are not those of the reference; give the same";
     refused(&|maps| maps[1] = cut(&maps[1]), narrow);
+    let one_channel = |map: &ForceMap| {
+        let table = map.table();
+        let axes = (table.depths().to_vec(), table.laterals().to_vec());
+        let table = ForceTable::of_channels(axes.0, axes.1, table.normal().clone(), None);
+        measured(map.phantom().cloned(), table.unwrap())
+    };
+    let one = "maps[1]: the map has no lateral forces, which are needed here";
+    refused(&|maps| maps[1] = one_channel(&maps[1]), one);
+    assert_error(
+        Bank::new(one_channel(&reference()), maps()),
+        "reference: the map has no lateral forces, which are needed here[..]",
+    );
     let error = Bank::new(map(None, &[3e-3]), maps()).unwrap_err();
     let shallow = "depth 4.0 mm is not in the map; give one of 3.0 mm";
     assert!(error.to_string().starts_with(shallow), "{error}");
@@ -160,6 +172,17 @@ fn a_bank_has_the_forces_of_each_gel() {
             assert!(is_small, "{position}: {difference:?}");
         }
     }
+}
+
+// Verifies: BNK-020. Above 0.4 mm its half, 0.2 mm, is nearer to it than to 0.45 mm, whose half is nearer to 0.4 mm; so is 0.7 mm to 0.45 mm.
+#[test]
+fn the_reference_has_the_depths_beside_which_no_other_is_nearer() {
+    let mut light = plan();
+    light.probe_depths = vec![0.4e-3, 0.45e-3];
+    let reference = light.reference().unwrap();
+    let micrometres = reference.table().depths().iter().map(|depth| 1e6 * depth);
+    let micrometres: Vec<f64> = micrometres.map(f64::round).collect();
+    assert_eq!(micrometres, [200.0, 400.0, 450.0, 750.0]);
 }
 
 // Verifies: BNK-020, BNK-021.
