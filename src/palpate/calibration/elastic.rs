@@ -3,6 +3,7 @@
 use crate::fem::{Contact, FemError, Model};
 use crate::force_map::ForceMap;
 use crate::phantom::Phantom;
+use crate::refusal::Refusal;
 
 /// Depths of the table of a gel, and the first over the last.
 const DEPTHS: i32 = 32;
@@ -38,7 +39,7 @@ impl Gel {
     /// The forces of `phantom` down to a depth, m.
     ///
     /// # Errors
-    /// As [`Model::map`].
+    /// As [`Model::map`]; a force that is not above 0.
     ///
     /// Implements: CAL-011.
     pub(super) fn new(
@@ -56,6 +57,10 @@ impl Gel {
             forces.map(|force| libm::log(*force)).collect()
         };
         let own = map(&model)?;
+        let found = "the mesh is so coarse that a light touch has no force";
+        let mut forces = own.table().normal().values().iter();
+        let coarse = Refusal::state(found, "give a smaller mesh size");
+        coarse.when(forces.any(|force| *force <= 0.0))?;
         let mut exponents = Vec::new();
         for &layer in asked.layers {
             let changed = |factor: f64| -> Result<Vec<f64>, FemError> {
@@ -118,14 +123,18 @@ pub(super) fn stiffened(
     phantom: &Phantom,
     layers: &[usize],
     factors: &[f64],
-) -> Result<Phantom, crate::refusal::Refusal> {
+) -> Result<Phantom, Refusal> {
     phantom.changed(|parts| {
         for (layer, factor) in layers.iter().zip(factors) {
             parts.layers[*layer].material.youngs_modulus *= factor;
         }
         if layers.is_empty() {
             let all = parts.materials_mut();
-            all.for_each(|material| material.youngs_modulus *= factors[0]);
+            all.for_each(|material| {
+                material.youngs_modulus *= factors[0];
+                material.yeoh_c20 *= factors[0];
+                material.fibre_modulus *= factors[0];
+            });
         }
     })
 }

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::*;
 use crate::fem::{Contact, Model};
+use crate::phantom::Strain;
 use crate::stats::random::Generator;
 
 /// Times of a ramp, uneven.
@@ -270,6 +271,30 @@ fn one_factor_is_that_of_all_moduli_and_of_an_inclusion_too() {
     };
     assert_eq!(stiffer(&[]), scaled([1.5; 3]));
     assert_eq!(stiffer(&[1]), scaled([1.0, 1.5, 1.0]));
+    let fibrous = Phantom::builtin("none").unwrap().changed(|parts| {
+        parts.strain = Strain::Finite;
+        parts.layers[1].material.yeoh_c20 = 2e3;
+        parts.layers[1].material.fibre_modulus = 2e4;
+    });
+    let fibrous = fibrous.unwrap();
+    let force = |of: &Phantom| {
+        let map = Model::new(of, 3e-3, Contact::default()).unwrap();
+        let map = map.sweep(&[1e-3], &[0.0]).unwrap();
+        map.table().normal().row(0)[0]
+    };
+    let factor = force(&stiffened(&fibrous, &[], &[1.5]).unwrap()) / force(&fibrous);
+    assert!((factor - 1.5).abs() < 1e-6, "{factor}");
+}
+
+// Verifies: CAL-011. At 0.5 µm the probe is 0.16 mm wide, and the first of the contact points are 0.21 mm apart.
+#[test]
+fn a_mesh_without_a_point_under_the_lightest_touch_is_refused() {
+    let phantom = Phantom::builtin("none").unwrap();
+    let error = Gel::new(&phantom, asked(&[], 2e-3), 1e-4).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "the mesh is so coarse that a light touch has no force; give a smaller mesh size"
+    );
 }
 
 /// A sphere on a gel that relaxes by a power law, 2 s down and 10 s held; from a contact on.
