@@ -72,6 +72,12 @@ pub(super) fn samples(
             singular: size.singular(positions[0].into()),
         }));
     }
+    // A phantom that is all corner is judged as a whole.
+    if samples.iter().all(|sample| sample.singular) {
+        samples
+            .iter_mut()
+            .for_each(|sample| sample.singular = false);
+    }
     samples
 }
 

@@ -7,6 +7,7 @@ use super::element::NODES;
 use super::size::SizeField;
 use super::triangle::Point;
 use super::triangulate::Triangulation;
+use crate::decimal::mm;
 use crate::phantom::{Material, Outline, Phantom, Support};
 use crate::refusal::Refusal;
 
@@ -102,11 +103,21 @@ impl Mesh {
         wrong.when(!(size > 0.0 && size.is_finite()))?;
         let field = SizeField::new(phantom, size);
         let nodes = field.expected_nodes();
-        let found = format!(
-            "{asked} makes about {nodes:.0} nodes, allowed: at most {MOST_NODES}; a larger size makes fewer"
-        );
-        Refusal::state(found, "").when(nodes > MOST_NODES)?;
-        Ok((field, nodes))
+        if nodes <= MOST_NODES {
+            return Ok((field, nodes));
+        }
+        let found = format!("{asked} makes about {nodes:.0} nodes, allowed: at most {MOST_NODES}");
+        // No phantom has a larger length.
+        let remedy = if SizeField::new(phantom, 1.0).expected_nodes() <= MOST_NODES {
+            "a larger size makes fewer".into()
+        } else {
+            let layers = phantom.layers().iter().map(|layer| layer.thickness);
+            let thinnest = mm(layers.fold(f64::INFINITY, f64::min));
+            format!(
+                "no size makes few enough: give a layer thicker than {thinnest} mm, or wider gaps"
+            )
+        };
+        Err(Refusal::state(found, remedy).into())
     }
 
     /// Triangles with a node in the middle of each edge.

@@ -9,9 +9,11 @@ use super::finite::{Equilibrium, FiniteModel, Friction, law_of};
 use super::mesh::Mesh;
 use super::size::SizeField;
 use super::{FemError, Pose, arithmetic};
+use crate::decimal::mm;
 use crate::force::Force;
 use crate::force_map::{
-    Certificate, ForceMap, ForceTable, Matrix, SmallestDet, Source, check_axes, increasing,
+    Certificate, ForceMap, ForceTable, Matrix, SAME_POSITION, SmallestDet, Source, check_axes,
+    increasing,
 };
 use crate::phantom::{Phantom, Strain};
 use crate::refusal::Refusal;
@@ -523,7 +525,9 @@ impl Model {
             solved.push(0.0);
             solved.iter_mut().for_each(|x| *x = x.abs());
         }
-        increasing(solved.into_iter())
+        let mut solved = increasing(solved.into_iter());
+        solved.dedup_by(|next, x| *next - *x <= SAME_POSITION);
+        solved
     }
 
     fn certificate(

@@ -114,6 +114,33 @@ fn a_map_holds_the_forces_of_its_poses() {
     assert_eq!(model.solved_laterals(&laterals), [0.0, 1e-3, 3e-3, 7e-3]);
 }
 
+// Verifies: FEM-014, FEM-038. Sums of steps have roundings.
+#[test]
+fn positions_that_round_to_each_other_are_one() {
+    let model = coarse("2.6", Contact::DeformedNormal);
+    let laterals = [-0.3e-3, 0.1e-3 + 0.2e-3 + 1e-16];
+    assert_ne!(-laterals[0], laterals[1]);
+    assert_eq!(model.solved_laterals(&laterals), [0.0, 0.3e-3]);
+    let map = model.map(&[1e-3], &laterals, &|_| ()).unwrap();
+    let normal = map.table().normal().row(0);
+    assert_eq!(normal[0], normal[1]);
+}
+
+// Verifies: FEM-013.
+#[test]
+fn a_phantom_that_is_all_corner_is_judged_as_a_whole() {
+    let tiny = builtin("none").changed(|parts| {
+        parts.layers.truncate(1);
+        parts.well.width = 1.6e-3;
+        parts.layers[0].thickness = 0.5e-3;
+        parts.probe.radius = 0.3e-3;
+    });
+    let model = Model::new(&tiny.unwrap(), MESH_SIZE, Contact::default()).unwrap();
+    let map = model.map(&[0.1e-3], &[0.0], &|_| ()).unwrap();
+    let det = map.certificate().unwrap().smallest_det.det;
+    assert!(0.0 < det && det < 1.0, "{det}");
+}
+
 // Verifies: FEM-014.
 #[test]
 fn a_map_of_an_asymmetric_phantom_solves_each_side_by_itself() {

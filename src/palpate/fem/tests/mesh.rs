@@ -160,7 +160,12 @@ fn sizes_without_a_mesh_are_refused() {
         let (_, about) = said.split_once(" makes about ").expect("a forecast");
         let (nodes, _) = about.split_once(" nodes").expect("a number");
         assert!(nodes.parse::<f64>().unwrap() > least, "{said}");
+        assert!(said.ends_with("; a larger size makes fewer"), "{said}");
     }
+    let thin = phantom.changed(|parts| parts.layers[0].thickness = 1e-6);
+    let said = Mesh::new(&thin.unwrap(), 30e-3).unwrap_err().to_string();
+    let remedy = "; no size makes few enough: give a layer thicker than 0.001 mm, or wider gaps";
+    assert!(said.ends_with(remedy), "{said}");
 }
 
 // Verifies: FEM-017.
