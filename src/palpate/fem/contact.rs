@@ -344,7 +344,7 @@ impl Surface {
     }
 
     /// The points that the probe may well touch: those below its chord at the undeformed surface, and those in contact.
-    fn reach(&self, state: &ContactState, pose: Pose) -> Range<usize> {
+    pub(super) fn reach(&self, state: &ContactState, pose: Pose) -> Range<usize> {
         let half = self.probe.half_width_at(pose.depth);
         let from = |x: f64| self.positions.partition_point(|position| position[0] < x);
         let (first, last) = (from(pose.lateral - half), from(pose.lateral + half));

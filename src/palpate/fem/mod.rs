@@ -77,7 +77,7 @@ pub enum FemError {
     /// The phantom is not valid, no sound mesh has the size that was asked for, double precision does not hold its stiffness, or the
     /// forces do not make a map.
     Refused(Box<Refusal>),
-    /// The probe cannot stand there.
+    /// The probe cannot stand there, or the mesh is too coarse for its contact.
     Pose(Box<Refusal>),
     /// A linear solve left too much.
     Residual {

@@ -73,6 +73,10 @@ pub enum State {
 
 /// Deepest step between two poses of which one starts the other, over the probe's radius.
 const DEPTH_STEP: f64 = 0.1;
+/// Contact points under the probe with which a force is within 8 % of that on a fine mesh.
+const LEAST_POINTS: usize = 6;
+/// Depth over the probe's radius down to which fewer points do: the force is small, and so is its error.
+const LIGHT: f64 = 0.02;
 /// How often a step that does not converge is halved.
 const HALVINGS: u32 = 6;
 
@@ -162,15 +166,26 @@ impl Model {
         &self.surface
     }
 
+    /// Whether the probe can stand there, on enough contact points.
+    ///
+    /// Implements: PHA-011, FEM-085.
     fn check_pose(&self, pose: Pose) -> Result<(), FemError> {
+        let is_light = pose.depth <= LIGHT * self.phantom.probe().radius;
+        let points = self.surface.reach(&ContactState::untouched(0), pose).len();
+        let [depth, lateral] = [pose.depth, pose.lateral].map(mm);
+        let found = format!(
+            "the mesh has {points} contact points under the probe at depth {depth} mm, lateral {lateral} mm, too few for a force"
+        );
+        let coarse = Refusal::state(found, "give a smaller mesh size or a larger probe");
         let checked = self.phantom.check_pose(pose.depth, pose.lateral);
+        let checked = checked.and_then(|()| coarse.when(!is_light && points < LEAST_POINTS));
         checked.map_err(|refusal| FemError::Pose(refusal.into()))
     }
 
     /// The force at one pose.
     ///
     /// # Errors
-    /// [`FemError::Pose`] where the probe cannot stand, [`FemError::NoConvergence`].
+    /// [`FemError::Pose`] where the probe cannot stand or has too few contact points, [`FemError::NoConvergence`].
     ///
     /// Implements: PHA-011, FEM-020, FEM-021, FEM-080, FEM-083.
     pub fn solve(&self, pose: Pose) -> Result<PoseSolution, FemError> {
@@ -346,6 +361,7 @@ impl Model {
     ///
     /// Implements: FIN-011, FEM-008.
     pub fn path(&self, poses: &[Pose]) -> Result<(Vec<PoseSolution>, Vec<FieldCheck>), FemError> {
+        poses.iter().try_for_each(|&pose| self.check_pose(pose))?;
         let path: Vec<PoseSolution> = match (&self.finite, poses.first()) {
             (Some(finite), Some(first)) => {
                 let finite = finite.along_path();

@@ -26,6 +26,26 @@ fn at_contact_points(values: &[f64]) -> Vec<f64> {
     values.windows(3).step_by(2).flat_map(at_points).collect()
 }
 
+// Verifies: FEM-085. The contact points at the skin are 0.21 and 0.29 mm apart.
+#[test]
+fn a_probe_on_too_few_contact_points_is_refused() {
+    let of_radius = |radius: f64| {
+        let phantom = builtin("none").changed(|parts| parts.probe.radius = radius);
+        super::coarse(&phantom.unwrap(), Contact::default())
+    };
+    let (small, paper) = (of_radius(0.1e-3), of_radius(6.5e-3));
+    let (deep, light) = (pose(0.05e-3, 0.0), pose(0.002e-3, 0.0));
+    let expected = "the mesh has 0 contact points under the probe at depth 0.05 mm, lateral 0.0 mm, too few for a force; give a smaller mesh size or a larger probe";
+    let error = small.solve(deep).unwrap_err();
+    assert_eq!(error.to_string(), expected);
+    let map = small.map(&[light.depth, deep.depth], &[0.0], &|_| ());
+    assert_eq!(map.unwrap_err().to_string(), expected);
+    assert_eq!(small.path(&[deep]).unwrap_err().to_string(), expected);
+    // R/50, and just beyond it with 2.6 mm of the surface below the chord.
+    assert!(small.solve(light).is_ok());
+    assert!(paper.solve(pose(0.1301e-3, 0.0)).is_ok());
+}
+
 // Verifies: FEM-009.
 #[test]
 fn contact_points_are_the_gauss_points_of_the_edges() {
