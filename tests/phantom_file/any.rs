@@ -95,7 +95,7 @@ fn phantom() -> impl Strategy<Value = Phantom> {
             let strain = finite.map_or(Strain::Small, |_| Strain::Finite);
             let (friction, yeoh_c20) = finite.unwrap_or_default();
             layers[0].material.yeoh_c20 = yeoh_c20;
-            let parts = PhantomParts {
+            let mut parts = PhantomParts {
                 name,
                 strain,
                 geometry: Default::default(),
@@ -108,6 +108,10 @@ fn phantom() -> impl Strategy<Value = Phantom> {
                     friction,
                 },
             };
+            if strain == Strain::Finite {
+                let materials = parts.materials_mut();
+                materials.for_each(|of| of.poisson_ratio = of.poisson_ratio.max(1e-3));
+            }
             Phantom::new(parts).expect("sizes that fit")
         },
     )

@@ -19,7 +19,7 @@ const LENGTHS: RangeInclusive<f64> = 1e-6..=1.0;
 
 /// Above this Poisson's ratio displacement elements lock, and the stiffness matrix is nearly singular.
 const LARGEST_POISSON_RATIO: f64 = 0.4995;
-/// With pressures as unknowns of their own, no element locks.
+/// With pressures λ ln J as unknowns of their own, no element locks, and λ must be above 0.
 const LARGEST_WITH_PRESSURES: f64 = 0.4999;
 
 /// The largest modulus that need not be there, Pa: no solid is stiffer.
@@ -49,7 +49,9 @@ impl Phantom {
     /// Implements: PHA-004, PHA-006, PHA-009, PHA-015, PHA-030, CON-007.
     pub(super) fn check(&self) -> Check {
         check_name("name", &self.0.name)?;
-        within("well.width_mm", mm(self.0.well.width), LENGTHS, "")?;
+        // Wider than the smallest probe.
+        let widths = (Excluded(2.0 * LENGTHS.start()), Included(*LENGTHS.end()));
+        within("well.width_mm", mm(self.0.well.width), widths, "")?;
         self.check_supports()?;
         check_count("layer", self.0.layers.len(), 1..=100)?;
         for (at, layer) in self.0.layers.iter().enumerate() {
@@ -216,11 +218,11 @@ fn check_material(table: &str, material: &Material, strain: Strain) -> Check {
     let modulus = kpa(material.youngs_modulus);
     let moduli = (Excluded(0.0), Unbounded);
     within(&format!("{table}.youngs_modulus_kpa"), modulus, moduli, "")?;
-    let largest = match strain {
-        Strain::Small => LARGEST_POISSON_RATIO,
-        Strain::Finite => LARGEST_WITH_PRESSURES,
+    let (least, largest) = match strain {
+        Strain::Small => (-1.0, LARGEST_POISSON_RATIO),
+        Strain::Finite => (0.0, LARGEST_WITH_PRESSURES),
     };
-    let ratios = (Excluded(-1.0), Included(largest));
+    let ratios = (Excluded(least), Included(largest));
     let ratio = plain(material.poisson_ratio);
     within(&format!("{table}.poisson_ratio"), ratio, ratios, "")?;
     at_finite_strain(

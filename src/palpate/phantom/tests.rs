@@ -156,6 +156,14 @@ fn the_ends_of_the_ranges_are_where_the_spec_says() {
     let poisson = |ratio| valid(&|p| p.layers[1].material.poisson_ratio = ratio);
     assert!(poisson(0.4995) && poisson(-0.9999) && poisson(0.0));
     assert!(!poisson(0.49951) && !poisson(-1.0) && !poisson(-1.5));
+    let finite = |ratio| {
+        valid(&|p| {
+            p.strain = Strain::Finite;
+            p.layers[1].material.poisson_ratio = ratio;
+        })
+    };
+    assert!(finite(0.4999) && finite(1e-3));
+    assert!(!finite(0.49991) && !finite(0.0) && !finite(-0.3));
     let radius = |radius| valid(&|p| p.probe.radius = radius);
     assert!(radius(0.016_999) && !radius(0.017) && !radius(0.018));
     let skin = |thickness| valid(&|p| p.layers[0].thickness = thickness);
