@@ -73,10 +73,6 @@ struct Constraint {
 }
 
 impl Constraint {
-    fn normal(&self) -> Vector2<f64> {
-        self.normal
-    }
-
     /// The normal turned by a quarter.
     fn tangent(&self) -> Vector2<f64> {
         Vector2::new(-self.normal.y, self.normal.x)
@@ -135,7 +131,7 @@ impl Tangent {
             Col::from_fn(mismatch.len(), project)
         };
         let scaled = |x: &Col<f64>| Col::from_fn(x.nrows(), |k| self.roots[k] * x[k]);
-        let (normal, tangential) = (along(Constraint::normal), along(Constraint::tangent));
+        let (normal, tangential) = (along(|c| c.normal), along(Constraint::tangent));
         let r = &self.across * self.pushed.solve(&normal) - tangential;
         // b = r + Q D^½ (I − D^½ Q D^½)⁻¹ D^½ r.
         let slips = &r + &self.slid * scaled(&self.slip.solve(scaled(&r)));
@@ -356,7 +352,7 @@ impl Surface {
     /// gap, and the displacements under them. `None` if C_nn is singular or a point lies on the probe's axis.
     fn settle(&self, state: &mut ContactState, pose: Pose, reach: Range<usize>) -> Option<()> {
         let constraints = self.constraints(state, pose)?;
-        let normals: Vec<Vector2<f64>> = constraints.iter().map(Constraint::normal).collect();
+        let normals: Vec<Vector2<f64>> = constraints.iter().map(|c| c.normal).collect();
         let onto = |k: usize| {
             let u = Vector2::from(state.displacements[state.active[k]]);
             constraints[k].normal.dot(&u) - constraints[k].gap
@@ -399,7 +395,7 @@ impl Surface {
     fn tangent(&self, state: &ContactState, pose: Pose) -> Option<Tangent> {
         let m = state.active.len();
         let constraints = self.constraints(state, pose)?;
-        let normal: Vec<Vector2<f64>> = constraints.iter().map(Constraint::normal).collect();
+        let normal: Vec<Vector2<f64>> = constraints.iter().map(|c| c.normal).collect();
         let tangent: Vec<Vector2<f64>> = constraints.iter().map(Constraint::tangent).collect();
         let between = |of, by| self.between(&state.active, [of, by], true);
         let pushed = self.pushed(&state.active, &normal)?;

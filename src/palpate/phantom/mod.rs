@@ -109,13 +109,6 @@ pub enum Strain {
     Finite,
 }
 
-/// The word of a file.
-impl fmt::Display for Strain {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
-}
-
 /// How a wall or the floor of the well holds the layers.
 ///
 /// Implements: PHA-016.
@@ -131,13 +124,6 @@ pub enum Support {
     Free,
 }
 
-/// The word of a file.
-impl fmt::Display for Support {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
-}
-
 /// What the cross-section of a phantom stands for.
 ///
 /// Implements: PHA-033.
@@ -151,12 +137,17 @@ pub enum Geometry {
     Axisymmetric,
 }
 
-/// The word of a file.
-impl fmt::Display for Geometry {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
-    }
+/// Displays the word of a file.
+macro_rules! display_word {
+    ($($name:ident),*) => {$(
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                self.serialize(f)
+            }
+        }
+    )*};
 }
+display_word!(Strain, Support, Geometry);
 
 /// The well that holds the layers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
