@@ -384,6 +384,13 @@ fn a_record_of_a_logger_is_the_same_record() {
          palpate: note: logger.csv: commas in its numbers are decimal commas\n"
     );
     assert_eq!((found, String::new()), answer_and_notes("with.csv", ""));
+    // The reader of a map has notes too.
+    let map = maps(place())[0].table().to_csv();
+    place().write("none.csv", map.replace("lateral_force_n", "Fx (N)"));
+    let measured = MAPS.replace("none.json", "none.csv");
+    let (_, notes, _) = asked(&format!("with.csv {measured} {USUAL}"));
+    let expected = "palpate: note: none.csv: column \"Fx (N)\" is read as lateral_force_n\n";
+    assert_eq!(notes, expected);
 }
 
 // Verifies: CLI-174, MAP-045, MAP-046, MAP-047.

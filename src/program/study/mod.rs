@@ -76,22 +76,23 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
     let (sampler, shard) = (Sampler::new(&plan)?, arguments.shard);
     make_folder(&arguments.out)?;
     let path = shard.file(&arguments.out);
-    let samples = 0..sampler.design().samples();
-    let mut is_left: Vec<bool> = samples.clone().map(|sample| shard.has(sample)).collect();
-    let count = |is_left: &[bool]| is_left.iter().filter(|is_left| **is_left).count();
-    let (total, mut failed) = (count(&is_left), 0);
+    let first = shard.number - 1;
+    let of_shard = (first..sampler.design().samples()).step_by(shard.of);
+    let mut is_left = vec![true; of_shard.len()];
+    let (total, mut found, mut failed) = (is_left.len(), 0, 0);
     let header = Envelope::job("palpate-study-samples", Header { shard, plan: &plan });
     let part = Journal::open(path.clone(), &header, "palpate study run", |text| {
         let record = Record::parse(text, &sampler)?;
         let sample = record.sample;
-        if !std::mem::take(&mut is_left[sample]) {
+        if !shard.has(sample) || !std::mem::take(&mut is_left[sample / shard.of]) {
             let found = format!("sample {sample} appears twice or belongs to another shard");
             return Err(Refusal::state(found, ""));
         }
+        found += 1;
         failed += usize::from(record.is_failed());
         Ok(())
     })?;
-    let bar = resumed_bar(&path, total - count(&is_left), total, "samples");
+    let bar = resumed_bar(&path, found, total, "samples");
     let compute = |sample: usize| {
         let outcome = match sampler.sample(sample) {
             Ok(values) => Outcome::Values(values),
@@ -102,8 +103,11 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
         bar.inc(1);
         Ok::<_, CliError>(usize::from(record.is_failed()))
     };
-    let left = samples.into_par_iter().filter(|&sample| is_left[sample]);
-    let computed = left.map(compute);
+    let left = is_left
+        .into_par_iter()
+        .enumerate()
+        .filter(|(_, left)| *left);
+    let computed = left.map(|(at, _)| compute(first + at * shard.of));
     failed += computed.try_reduce(|| 0, |a, b| Ok(a + b))?;
     bar.finish_and_clear();
     print(&format!(
