@@ -14,6 +14,7 @@ use super::path::PathArguments;
 use super::solve::{phantom, tell_large_strain_to};
 use palpate::fem::{Contact, MESH_SIZE, Model};
 use palpate::force_map::ForceMap;
+use palpate::phantom::Phantom;
 use palpate::simulation::{Hand, Motion, Path, Sensor, Simulation, Tremor};
 
 /// The distance of the rows and columns of a phantom's map, and how much further than the path it reaches, m.
@@ -104,10 +105,9 @@ pub fn simulate(arguments: &SimulateArguments) -> Result<(), CliError> {
     let Some(path) = arguments.path.path()? else {
         refuse!("give --depths-mm or --path");
     };
-    let solved = arguments.phantom.as_deref();
-    let map = match (&arguments.map, solved) {
+    let map = match (&arguments.map, &arguments.phantom) {
         (Some(file), _) => ForceMap::read(file)?,
-        (None, name) => map(name.unwrap_or_default(), &path)?,
+        (None, name) => map(name.as_deref().unwrap_or_default(), &path)?,
     };
     let (motion, sensor) = (&arguments.motion, &arguments.sensor);
     let simulation = Simulation {
@@ -127,8 +127,11 @@ pub fn simulate(arguments: &SimulateArguments) -> Result<(), CliError> {
         None => print(&record(1)?)?,
         Some(folder) => write_all(folder, arguments.records, record)?,
     }
-    let (_, deepest) = path.extent();
-    solved.map_or(Ok(()), |name| tell_large_strain_to(deepest, &map, name))
+    if arguments.map.is_some() {
+        return Ok(());
+    }
+    let ((_, deepest), name) = (path.extent(), map.phantom().map_or("", Phantom::name));
+    tell_large_strain_to(deepest, &map, name)
 }
 
 /// Writes the records into a new folder, or leaves none where one is refused.
