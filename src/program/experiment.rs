@@ -11,12 +11,12 @@ use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::error::refuse;
+use super::input::{lines, next};
 use super::numbers::newtons;
 use super::output::{print, say};
 use super::platform::{raise_priority, stop_on_signals};
 use super::playback::{DeviceArguments, limits};
 use super::progress::bar;
-use super::watch::{lines, next};
 use palpate::force_map::{ForceMap, Hypotheses};
 use palpate::hid::HapticDevice;
 use palpate::hid::simulated::Trajectory;
@@ -268,7 +268,7 @@ impl<'a> Pairs<'a> {
         say(prompt);
         let line = next(self.keyboard.as_ref()?, &self.stop)?.ok()?;
         // More than a line is no person.
-        (line.len() < LONGEST_LINE).then(|| line.trim().to_string())
+        (line.len() < LONGEST_ANSWER).then(|| line.trim().to_string())
     }
 }
 
@@ -280,5 +280,5 @@ fn open(arguments: &ExperimentArguments) -> Result<Box<dyn HapticDevice + Send>,
     device.map_err(CliError::refused("device"))
 }
 
-/// The longest line that is read from the keyboard, bytes.
-const LONGEST_LINE: usize = 1024;
+/// A line from the keyboard that is as long is no answer, bytes.
+const LONGEST_ANSWER: usize = 1024;

@@ -17,6 +17,7 @@ mod devices;
 mod error;
 mod experiment;
 mod import;
+mod input;
 mod layout;
 mod manual;
 pub mod numbers;

@@ -1,10 +1,7 @@
 //! `palpate watch`: a sweep against a bank while it is taken (`spec/sequential.md`).
 
-use std::io::{self, BufRead, Read, Write, stdin, stdout};
+use std::io::{Write, stdout};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -13,6 +10,7 @@ use serde::Serialize;
 use super::CliError;
 use super::detect::arguments::{Known, NoiseSd};
 use super::error::refuse;
+use super::input::{lines, next};
 use super::layout::LayoutArguments;
 use super::numbers::probability;
 use super::output::{self, Envelope, printed};
@@ -22,13 +20,6 @@ use palpate::chart::coverage_figure;
 use palpate::detect::sequential::Wald;
 use palpate::detect::{Decision, required_gamma};
 use palpate::trace::{LiveSamples, Unknown, reasons, refused};
-
-/// What is read as one line at most, bytes.
-const LONGEST_LINE: u64 = 1 << 16;
-/// Lines that wait at most: beyond, the writer waits.
-const WAITING: usize = 1024;
-/// How long a signal waits at most.
-const LOOK: Duration = Duration::from_millis(20);
 
 /// Arguments of `palpate watch`.
 #[derive(Debug, Args)]
@@ -159,41 +150,6 @@ fn why_undecided(answer: &WatchAnswer) -> String {
         );
     }
     format!("-: cannot be judged: {}", reasons(causes))
-}
-
-/// The lines of standard input, which another thread reads, so that a signal need not wait for the next one.
-pub(super) fn lines() -> Receiver<io::Result<String>> {
-    let (to, lines) = sync_channel(WAITING);
-    thread::spawn(move || {
-        let (mut input, mut line) = (stdin().lock(), Vec::new());
-        loop {
-            line.clear();
-            let read = input
-                .by_ref()
-                .take(LONGEST_LINE)
-                .read_until(b'\n', &mut line);
-            let text = read.map(|_| String::from_utf8_lossy(&line).into_owned());
-            let is_end = text.as_ref().is_ok_and(String::is_empty);
-            if is_end || to.send(text).is_err() {
-                break;
-            }
-        }
-    });
-    lines
-}
-
-/// The next line; none at the end of the input, or after a signal.
-pub(super) fn next(
-    lines: &Receiver<io::Result<String>>,
-    stop: &AtomicBool,
-) -> Option<io::Result<String>> {
-    while !stop.load(Ordering::Relaxed) {
-        match lines.recv_timeout(LOOK) {
-            Err(RecvTimeoutError::Timeout) => {}
-            line => return line.ok(),
-        }
-    }
-    None
 }
 
 /// Writes an answer, the last one with what `test` needs; whether somebody still reads.
