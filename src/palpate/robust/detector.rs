@@ -135,7 +135,6 @@ impl<'a> RobustDetector<'a> {
         if !answer.causes.is_empty() {
             // One for each sweep, or none.
             (answer.levels, answer.noise_sd, answer.glitches) = Default::default();
-            answer.causes.dedup();
             return Ok(answer);
         }
         let level = self.level(&answer.levels);
@@ -173,11 +172,11 @@ impl<'a> RobustDetector<'a> {
         for (sweep, forces) in self.sweeps.iter().zip(records) {
             let in_air = sweep.in_air(&self.question, forces.normal);
             answer.in_air.push(in_air);
-            if in_air != [0; 2] {
-                answer.causes.push(Cause::InAir);
-                continue;
-            }
-            match sweep.cleaned(&self.question, *forces) {
+            let cleaned = match in_air {
+                [0, 0] => sweep.cleaned(&self.question, *forces),
+                _ => Err(Cause::InAir),
+            };
+            match cleaned {
                 Ok(cleaned) => {
                     let Force { lateral, normal } = cleaned
                         .noise
@@ -189,6 +188,7 @@ impl<'a> RobustDetector<'a> {
                     answer.glitches.push(cleaned.glitches);
                     all.push(cleaned);
                 }
+                Err(cause) if answer.causes.contains(&cause) => {}
                 Err(cause) => answer.causes.push(cause),
             }
         }

@@ -17,8 +17,7 @@ pub const LEAST_SAMPLES_IN_NOISE: usize = 8;
 ///
 /// Implements: ROB-001.
 pub fn is_saturated(channel: &[f64]) -> bool {
-    let mut sorted = channel.to_vec();
-    sorted.sort_by(f64::total_cmp);
+    let sorted = sorted(channel);
     let runs: Vec<usize> = sorted.chunk_by(|a, b| a == b).map(<[f64]>::len).collect();
     let samples = sorted.len() as f64;
     let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
@@ -46,16 +45,20 @@ pub fn is_saturated(channel: &[f64]) -> bool {
 ///
 /// Implements: ROB-001.
 pub fn is_stuck(normal: &[f64]) -> bool {
-    let mut sorted = normal.to_vec();
-    sorted.sort_by(f64::total_cmp);
+    let sorted = sorted(normal);
     let runs = sorted.chunk_by(|a, b| a == b).map(<[f64]>::len);
     runs.max() >= Some((STUCK * sorted.len() as f64) as usize)
 }
 
-/// The smallest difference of two values, N: the resolution of the sensor.
-pub fn step(channel: &[f64]) -> f64 {
+fn sorted(channel: &[f64]) -> Vec<f64> {
     let mut sorted = channel.to_vec();
     sorted.sort_by(f64::total_cmp);
+    sorted
+}
+
+/// The smallest difference of two values, N: the resolution of the sensor.
+pub fn step(channel: &[f64]) -> f64 {
+    let sorted = sorted(channel);
     let steps = sorted.windows(2).map(|pair| pair[1] - pair[0]);
     let least = steps
         .filter(|step| *step > 0.0)
