@@ -170,16 +170,18 @@ impl Model {
     ///
     /// Implements: PHA-011, FEM-085.
     fn check_pose(&self, pose: Pose) -> Result<(), FemError> {
-        let is_light = pose.depth <= LIGHT * self.phantom.probe().radius;
+        let stands = self.phantom.check_pose(pose.depth, pose.lateral);
+        stands.map_err(|refusal| FemError::Pose(refusal.into()))?;
         let points = self.surface.reach(&ContactState::untouched(0), pose).len();
+        if points >= LEAST_POINTS || pose.depth <= LIGHT * self.phantom.probe().radius {
+            return Ok(());
+        }
         let [depth, lateral] = [pose.depth, pose.lateral].map(mm);
         let found = format!(
             "the mesh has {points} contact points under the probe at depth {depth} mm, lateral {lateral} mm, too few for a force"
         );
         let coarse = Refusal::state(found, "give a smaller mesh size or a larger probe");
-        let checked = self.phantom.check_pose(pose.depth, pose.lateral);
-        let checked = checked.and_then(|()| coarse.when(!is_light && points < LEAST_POINTS));
-        checked.map_err(|refusal| FemError::Pose(refusal.into()))
+        Err(FemError::Pose(coarse.into()))
     }
 
     /// The force at one pose.
