@@ -73,6 +73,11 @@ pub enum Expected {
 }
 
 impl Expected {
+    /// Whether values are expected, not a refusal.
+    pub fn is_number(&self) -> bool {
+        matches!(self, Expected::Values(_))
+    }
+
     /// The expected values; none if a refusal is expected.
     pub fn values(&self) -> &[Wanted] {
         match self {

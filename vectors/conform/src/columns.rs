@@ -1,5 +1,6 @@
 //! Questions and answers as a table with one number per row, for programs that read no JSON.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write;
 
@@ -117,7 +118,12 @@ pub fn judge_table(answers: &mut Answers, text: &str) -> Result<(), String> {
         let mut add = || {
             let (id, key, place, value) = cell(line)?;
             let cells = found.entry(id).or_default().entry(key).or_default();
-            cells.insert(place, value).is_none().then_some(())
+            // The first of two rows for one place counts.
+            let Entry::Vacant(free) = cells.entry(place) else {
+                return None;
+            };
+            free.insert(value);
+            Some(())
         };
         if add().is_none() {
             if !answers.lenient {
@@ -162,33 +168,43 @@ fn cell(line: &str) -> Option<(&str, &str, Place, Value)> {
 
 /// The answer to a case in the form of the lines' answers.
 fn answer(found: &BTreeMap<&str, Cells>, case: &Case) -> Value {
-    if let Some(code) = found.get("error") {
-        return json!({"error": {"code": value(code)}});
-    }
+    // A refusal beside values is none: `judge` sees both.
+    let error = found.get("error").map(|code| json!({"code": value(code)}));
     let entry = |(key, cells): (&&str, &Cells)| {
         let mut wanted = case.expected.values().iter();
         let wanted = wanted.find(|wanted| wanted.key == **key);
         let expected = wanted.map_or(&Value::Null, |Wanted { value, .. }| value);
         (key.to_string(), typed(&value(cells), expected))
     };
-    let ok: Map<String, Value> = found.iter().map(entry).collect();
-    json!({"ok": ok})
+    let values = found.iter().filter(|(key, _)| **key != "error");
+    let ok: Map<String, Value> = values.map(entry).collect();
+    match error {
+        Some(error) if ok.is_empty() => json!({"error": error}),
+        Some(error) => json!({"error": error, "ok": ok}),
+        None => json!({"ok": ok}),
+    }
 }
 
-/// A value, a list, or a list of lists; gaps are closed, so that the lengths differ.
+/// A value, a list, or a list of lists. Rows and columns that do not count from 0, one by one, are no value: it is null.
 fn value(cells: &Cells) -> Value {
-    let mut rows: BTreeMap<usize, Vec<Value>> = BTreeMap::new();
-    let mut list = Vec::new();
+    let mut list: Vec<Value> = Vec::new();
     for (&place, value) in cells {
         let value = value.clone();
-        match place {
-            (Some(row), Some(_)) => rows.entry(row).or_default().push(value),
-            (Some(_), None) => list.push(value),
-            _ if value == "[]" => return json!([]),
-            _ => return value,
+        let count = list.len();
+        match (place, list.last_mut()) {
+            ((None, None), _) if cells.len() > 1 => return Value::Null,
+            ((None, None), _) if value == "[]" => return json!([]),
+            ((None, _), _) => return value,
+            ((Some(row), None), _) if row == count => list.push(value),
+            ((Some(row), Some(0)), _) if row == count => list.push(json!([value])),
+            ((Some(row), Some(column)), Some(Value::Array(last)))
+                if row + 1 == count && column == last.len() =>
+            {
+                last.push(value);
+            }
+            _ => return Value::Null,
         }
     }
-    list.extend(rows.into_values().map(Value::from));
     Value::from(list)
 }
 

@@ -212,6 +212,15 @@ fn check_wrong(wrong: &BugAnswer, expected: &Expected) -> Result<(), String> {
     let Expected::Values(values) = expected else {
         return Err("a case that must be refused has flags, but no wrong answers".into());
     };
+    let lacking = values
+        .iter()
+        .find(|wanted| !wrong.values.contains_key(&wanted.key));
+    if let Some(Wanted { key, .. }) = lacking {
+        return Err(format!(
+            "the wrong answer of {:?} has no {key:?}",
+            wrong.flag
+        ));
+    }
     let is_near = |wanted: &Wanted| {
         let limit = Limit::stated(wanted.tolerance, 10.0);
         let found = wrong.values.get(&wanted.key);

@@ -261,6 +261,7 @@ impl Judged {
     /// The cases that are asked, and the measure with the list of known mistakes.
     fn prepare(&self, chosen: &Chosen) -> Result<(Suite, Measure), Failure> {
         let (suite, mut measure) = (chosen.suite()?, self.measure.clone());
+        measure.named = !chosen.choice.only.is_empty() || !chosen.choice.case.is_empty();
         if let Some(file) = &self.accept {
             measure.accepted = read_accepted(file, &suite).map_err(usage)?;
         }

@@ -55,6 +55,10 @@ pub struct Measure {
     #[arg(skip)]
     #[serde(skip)]
     pub accepted: BTreeMap<String, String>,
+    /// Whether groups or cases were chosen by name: each of their ops must be asked.
+    #[arg(skip)]
+    #[serde(skip)]
+    pub named: bool,
 }
 
 impl Measure {
@@ -65,6 +69,7 @@ impl Measure {
             extreme: false,
             require: Require::Right,
             accepted: BTreeMap::new(),
+            named: false,
         }
     }
 }

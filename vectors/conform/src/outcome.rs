@@ -93,6 +93,15 @@ pub enum Outcome {
 }
 
 impl Outcome {
+    /// Whether values were judged, right or wrong.
+    pub fn is_of_number(&self) -> bool {
+        match self {
+            Outcome::Right | Outcome::Acceptable(_) => true,
+            Outcome::Wrong(wrong) => wrong.class == Class::Mathematics,
+            Outcome::Skipped(_) => false,
+        }
+    }
+
     /// A mistake that tells nothing about bugs.
     pub fn wrong(class: Class, reason: impl Into<String>) -> Outcome {
         Outcome::Wrong(Wrong {

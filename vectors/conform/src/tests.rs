@@ -1,5 +1,7 @@
 use serde_json::{Map, Value, json};
 
+use super::answers::Answers;
+use super::columns::judge_table;
 use super::text::{cut, escaped};
 use super::tolerance::{Limit, compare};
 use super::*;
@@ -141,15 +143,16 @@ fn a_condition_adds_roundoffs_to_the_tolerance() {
     }
 }
 
-/// Groups with these cases, each case with these flags unless it has its own; ids and bits are added.
+/// Groups with these cases, each case with these flags unless it has its own; ids and bits, of single numbers, are added.
 fn suite(groups: &[(&str, &[Value])], flags: &[&str]) -> Suite {
     let file = |&(name, cases): &(&str, &[Value])| {
         let cases = cases.iter().enumerate().map(|(number, case)| {
             let mut full =
                 json!({"id": format!("{name}-{number}"), "comment": "", "args": {}, "flags": flags});
             if let Some(ok) = case["ok"].as_object() {
-                let bits = |value: &Value| format!("{:#018x}", value.as_f64().unwrap().to_bits());
-                full["bits"] = ok.iter().map(|(key, value)| (key.clone(), bits(value))).collect();
+                let bits = |value: f64| format!("{:#018x}", value.to_bits());
+                let numbers = ok.iter().filter_map(|(key, value)| Some((key, value.as_f64()?)));
+                full["bits"] = numbers.map(|(key, value)| (key.clone(), bits(value))).collect();
             }
             let case = case.as_object().unwrap().clone();
             full.as_object_mut().unwrap().extend(case);
@@ -349,6 +352,95 @@ fn what_is_required_decides_what_fails() {
         let failure = verdict(&two_groups(), &measure, one_of_each()).failure();
         assert_eq!(failure.unwrap(), format!("{failed} of 5 cases failed"));
     }
+}
+
+/// No answer, and a refusal of everything, show nothing about mathematics.
+// Verifies: ORA-067.
+#[test]
+fn a_program_without_a_value_that_was_judged_fails_whatever_is_required() {
+    let suite = suite(&[("a", &vec![json!({"ok": {"a": 1.0}}); 2])], &[]);
+    let lost = Outcome::wrong(Class::Protocol, "no answer");
+    let refused = Outcome::wrong(Class::Range, "refused");
+    let mut measure = Measure::exact();
+    measure.require = Require::Mathematics;
+    for (outcomes, passed) in [
+        ([&lost, &lost], false),
+        ([&Outcome::Right, &lost], false),
+        ([&refused, &refused], false),
+        ([&Outcome::Right, &refused], true),
+    ] {
+        let found = verdict(&suite, &measure, outcomes.map(Outcome::clone).to_vec());
+        assert_eq!(found.passed, passed, "{outcomes:?}");
+    }
+}
+
+// Verifies: ORA-040, ORA-049.
+#[test]
+fn what_is_chosen_by_name_must_be_asked() {
+    let skipped = Outcome::Skipped("the program does not claim roc".into());
+    let outcomes = [vec![Outcome::Right; 3], vec![skipped; 3]].concat();
+    let mut measure = Measure::exact();
+    let of = |measure: &Measure| verdict(&two_groups(), measure, outcomes.clone()).failure();
+    assert_eq!(of(&measure), None);
+    measure.named = true;
+    assert!(of(&measure).unwrap().starts_with("roc not checked"));
+}
+
+// Verifies: ORA-047.
+#[test]
+fn each_answer_of_a_bug_is_wrong_and_names_it() {
+    let suite = Suite::embedded().unwrap();
+    let cases = suite.groups.iter().flat_map(|group| &group.cases);
+    let mut bugs = 0;
+    for (case, bug) in cases.flat_map(|case| case.wrong.iter().map(move |bug| (case, bug))) {
+        let found = judge(case, &json!({"ok": bug.values}), &Profile::exact());
+        let Outcome::Wrong(wrong) = found else {
+            panic!("{} {}: {found:?}", case.id, bug.flag)
+        };
+        assert!(
+            wrong.traces.are_of(&[&bug.flag]),
+            "{} {}",
+            case.id,
+            bug.flag
+        );
+        bugs += 1;
+    }
+    assert!(bugs > 1000, "{bugs}");
+}
+
+// Verifies: ORA-064, ORA-075.
+#[test]
+fn a_table_that_does_not_count_from_0_or_says_two_things_is_wrong() {
+    let bits = ["0x3ff0000000000000", "0x4000000000000000"];
+    let suite = suite(
+        &[(
+            "a",
+            &[json!({"ok": {"a": [1.0, 2.0]}, "bits": {"a": bits}})],
+        )],
+        &[],
+    );
+    let judged = |rows: &[&str]| {
+        let profile = Profile::exact();
+        let mut answers = Answers::new(&suite, &[], &profile, true);
+        let rows: Vec<String> = rows.iter().map(|row| format!("a-0,{row}")).collect();
+        judge_table(&mut answers, &rows.join("\n")).unwrap();
+        let (outcomes, notes) = answers.outcomes("");
+        (outcomes[0] == Outcome::Right, notes.len())
+    };
+    for (rows, is_right) in [
+        (&["a,0,,1", "a,1,,2"][..], true),
+        (&["a,1,,2", "a,0,,1"], true),
+        (&["a,1,,1", "a,2,,2"], false),
+        (&["a,0,,1", "a,2,,2"], false),
+        (&["a,0,0,1", "a,0,1,2"], false),
+        (&["a,,,1", "a,0,,1", "a,1,,2"], false),
+        (&["a,0,,1", "a,1,,2", "error,,,x"], false),
+    ] {
+        assert_eq!(judged(rows), (is_right, 0), "{rows:?}");
+    }
+    // Of two rows for one place the first counts, and a note tells it.
+    assert_eq!(judged(&["a,0,,1", "a,1,,2", "a,1,,3"]), (true, 1));
+    assert_eq!(judged(&["a,0,,1", "a,1,,3", "a,1,,2"]), (false, 1));
 }
 
 // Verifies: ORA-048, ORA-050.

@@ -96,8 +96,12 @@ impl Verdict {
             extreme,
             require,
             accepted,
+            ..
         } = &self.measure;
         let is_extreme = |index: usize| !extreme && profile.is_extreme(&group.cases[index]);
+        let mut judged = group.cases.iter().zip(outcomes);
+        let shows_a_number =
+            judged.any(|(case, outcome)| case.expected.is_number() && outcome.is_of_number());
         let mut counts = Counts::default();
         for (index, (case, outcome)) in group.cases.iter().zip(outcomes).enumerate() {
             counts.cases += 1;
@@ -117,13 +121,18 @@ impl Verdict {
             };
             let is_numeric = matches!(class, Some(Class::Mathematics | Class::Range));
             let extreme = is_numeric && is_extreme(index);
+            let is_permitted = match class {
+                Some(Class::Protocol) if case.expected.is_number() => false,
+                Some(Class::Range) if case.expected.is_number() && !shows_a_number => false,
+                class => require.permits(class),
+            };
             let finding = Finding {
                 group: group.name.clone(),
                 case: case.id.clone(),
                 comment: case.comment.clone(),
                 class,
                 reason: reason.clone(),
-                counts: accepted.is_none() && !extreme && !require.permits(class),
+                counts: accepted.is_none() && !extreme && !is_permitted,
                 accepted,
                 extreme,
             };
@@ -141,23 +150,28 @@ impl Verdict {
     }
 
     /// Why the program fails, if it does. That it refuses lines which everybody must refuse shows nothing: one of its ops must have been
-    /// asked, if these vectors have any.
+    /// asked, if these vectors have any, and each of them if they were chosen by name.
     ///
     /// Implements: ORA-049.
     pub fn failure(&self) -> Option<String> {
         let has_op = |group: &&GroupCounts| !group.op.is_empty();
-        let ops: Vec<&GroupCounts> = self.groups.iter().filter(has_op).collect();
+        let (asked, unasked): (Vec<&GroupCounts>, Vec<&GroupCounts>) = self
+            .groups
+            .iter()
+            .filter(has_op)
+            .partition(|group| group.counts.checked() > 0);
         let Counts { failed, .. } = self.totals;
         let checked = self.totals.checked();
-        let is_nothing = match &ops[..] {
-            [] => checked == 0,
-            ops => ops.iter().all(|group| group.counts.checked() == 0),
-        };
-        if is_nothing {
-            let ops: Vec<&str> = ops.iter().map(|group| &group.op[..]).collect();
-            let ops = ops.join(", ");
+        let ops: Vec<&str> = unasked.iter().map(|group| &group.op[..]).collect();
+        let ops = ops.join(", ");
+        if asked.is_empty() && (checked == 0 || !unasked.is_empty()) {
             return Some(format!(
                 "nothing checked: none of the ops of these vectors was asked ({ops})"
+            ));
+        }
+        if self.measure.named && !unasked.is_empty() {
+            return Some(format!(
+                "{ops} not checked: chosen by name, but the program does not claim it"
             ));
         }
         (failed > 0).then(|| format!("{failed} of {checked} cases failed"))

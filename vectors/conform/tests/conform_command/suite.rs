@@ -33,6 +33,7 @@ fn files_that_are_not_valid_are_refused_with_file_and_case() {
         /tolerance/p_correct | {"absolute": 1, "reason": "a"} | unit
         /tolerance/p_correct | {"ulp": -1, "reason": "a"} | -1
         /cases/1/wrong/0/ok/p_correct | 0.8413447460685439 | case choice-002, ten times
+        /cases/1/wrong/0/ok | {"p": 0.5} | case choice-002, has no "p_correct"
         /cases/1/condition | {"p": 1} | case choice-002, "p"
         /cases/1/condition | {"p_correct": [1]} | case choice-002, another shape
         /cases/1/condition | {"p_correct": -1} | case choice-002, another shape
