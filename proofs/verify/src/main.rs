@@ -89,7 +89,10 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
     let own = std::env::current_exe().ok();
     let mut outcomes = carry_out(&asked, &judged);
     if !inputs.test_runs.is_empty() && asked("tests") {
-        outcomes.push(test_run::outcome(&inputs.test_runs, Build::THIS.commit));
+        outcomes.push(test_run::outcome(
+            &inputs.test_runs,
+            Build::THIS.known_commit(),
+        ));
     }
     let soak = soak.map(|(batteries, seed)| soak_battery(batteries, seed));
     let executables = own.into_iter().chain([judged]).filter_map(executable);
