@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     let mut criterion = Criterion::default().configure_from_args();
     let paper = PaperTable::default();
     let table = paper.table().expect("the table is valid");
-    let limits = Limits::for_playback(4.0).expect("the limits are valid");
+    let limits = Limits::for_playback(4.0, PAPER.period_us).expect("the limits are valid");
 
     let state: State = armed();
     let input = Input {

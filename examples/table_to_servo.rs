@@ -25,7 +25,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let hand = Trajectory::probing(3e-3, 10e-3, Duration::from_millis(500));
     let duration = hand.duration();
     let device = SimulatedDevice::new(PAPER, Mechanics::PAPER, hand, Vec::new());
-    let mut session = Session::begin(device, loaded.table(), Limits::for_playback(4.0)?)?;
+    let limits = Limits::for_playback(4.0, PAPER.period_us)?;
+    let mut session = Session::begin(device, loaded.table(), limits)?;
     let unit = 1e-6 * f64::from(session.capabilities().force_unit_un);
     let mut strongest = 0.0f64;
     let end = session.run(|cycle, _| {

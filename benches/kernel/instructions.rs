@@ -14,7 +14,7 @@ use palpate_kernel_bench::{PaperTable, armed, sample};
 type Case = (PaperTable, Limits, State, Input);
 
 fn case(state: State, sample: Option<Sample>, request: Request) -> Case {
-    let limits = Limits::for_playback(4.0).expect("the limits are valid");
+    let limits = Limits::for_playback(4.0, 1000).expect("the limits are valid");
     (
         PaperTable::default(),
         limits,

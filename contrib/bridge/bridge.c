@@ -16,6 +16,8 @@ static const uint16_t about[8] = {1, 1000, 500, 8000, 1000, 15, 600, 140};
 static void put(uint8_t *at, int value) { at[0] = value & 255, at[1] = value >> 8 & 255; }
 static int get(const uint8_t *at) { return (int16_t)(at[0] | at[1] << 8); }
 static int position(double m) { return lround(fmin(fmax(m * 1e9 / about[1], -32767), 32767)); }
+static volatile sig_atomic_t ended;
+static void end(int signal_number) { ended = signal_number; }
 static double now_us(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
@@ -29,16 +31,19 @@ int main(int arguments, char **argument) {
         execvp(argument[1], argument + 1), _exit(127);
     }
     close(to[0]), close(from[1]), signal(SIGPIPE, SIG_IGN), fcntl(to[1], F_SETFL, O_NONBLOCK);
+    /* Of Ctrl-C, palpate knows too: it stops and ends its output. Without these lines the device would keep its last force. */
+    const struct sigaction stop = {.sa_handler = end};
+    signal(SIGINT, SIG_IGN), sigaction(SIGTERM, &stop, 0), sigaction(SIGHUP, &stop, 0);
     uint8_t feature[17] = {3}, input[11] = {1}, output[8] = {0};
     for (int number = 0; number < 8; number++) put(feature + 1 + 2 * number, about[number]);
     int alive = write(to[1], feature, sizeof feature) == sizeof feature, have = 0;
-    for (double due = now_us(), last = due; alive;) {
+    for (double due = now_us(), last = due; alive && !ended;) {
         const VendorPosition at = vendor_get_position();
         put(input + 1, position(at.lateral_m)), put(input + 3, position(at.normal_m)), put(input + 7, ++sequence);
         input[5] = at.button && isfinite(at.lateral_m + at.normal_m); /* what is no position lets go of the switch */
         alive = write(to[1], input, sizeof input) > 0 || errno == EAGAIN;
         due = fmax(due + about[4], now_us());
-        for (double left; alive && (left = due - now_us()) > 0;) { /* reports, until the next position is due */
+        for (double left; alive && !ended && (left = due - now_us()) > 0;) { /* reports, until the next position is due */
             fd_set ready;
             FD_ZERO(&ready);
             FD_SET(from[0], &ready);
@@ -55,6 +60,7 @@ int main(int arguments, char **argument) {
         if (now_us() - last > about[5] * 1e3) vendor_set_force(0, 0); /* the watchdog */
     }
     vendor_set_force(0, 0);
-    close(to[1]), close(from[0]), wait(&status);
+    close(to[1]), close(from[0]);
+    while (wait(&status) < 0 && errno == EINTR) {}
     return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }

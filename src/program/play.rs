@@ -60,7 +60,6 @@ pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
     if let Some(file) = &arguments.replay {
         return replay(arguments, file);
     }
-    let limits = limits(arguments.max_force)?;
     arguments.device.check()?;
     let probing = Trajectory::probing(4e-3, 9e-3, Duration::from_millis(1500));
     let seconds = arguments.seconds.map(Duration::from_secs);
@@ -68,7 +67,7 @@ pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
     let duration = seconds.or(is_simulated.then_some(probing.duration()));
     let hand = probing.repeated(duration.unwrap_or_default());
     let device = arguments.device.open(hand).map_err(failed)?;
-    session(arguments, device, limits, duration)
+    session(arguments, device, duration)
 }
 
 fn failed(error: impl Display) -> CliError {
@@ -100,10 +99,10 @@ fn table(
 fn session(
     arguments: &PlayArguments,
     mut device: Box<dyn HapticDevice + Send>,
-    limits: Limits,
     duration: Option<Duration>,
 ) -> Result<(), CliError> {
     let capabilities = device.capabilities().map_err(failed)?;
+    let limits = limits(arguments.max_force, &capabilities)?;
     let (loaded, scale) = table(arguments, &capabilities, &limits)?;
     let options = PlayOptions {
         duration,
@@ -279,7 +278,7 @@ mod tests {
         };
         let recording = Recording {
             capabilities: PAPER,
-            limits: Limits::for_playback(4.0).unwrap(),
+            limits: Limits::for_playback(4.0, PAPER.period_us).unwrap(),
             cycles: vec![cycle; 1000],
         };
         let bytes = recording.to_text().len() * MOST_RECORDED as usize / 1000;

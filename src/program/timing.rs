@@ -95,7 +95,7 @@ fn measured(arguments: &TimingArguments, budget: Budget) -> Result<Timing, CliEr
         None => paper::table()?,
     };
     let table = loaded.table();
-    let limits = limits(4.0)?;
+    let limits = limits(4.0, &PAPER)?;
     let cycles = arguments.cycles;
     let device = paper::device(cycles);
     let period = arguments.paced.then(|| PAPER.period());

@@ -249,7 +249,8 @@ pub struct ServoCommand {
 }
 
 /// One cycle of the servo loop: from `state`, the newest sample (null if none came) and a `PALPATE_SERVO_REQUEST_…` to the next state and the
-/// command. A refused call leaves the state and commands no force, unless `command` is null or overlaps something.
+/// command. A refused call commands no force, from which the force of the next call grows, unless `command` is null or overlaps something;
+/// it leaves the rest of the state.
 ///
 /// Total and bounded for every bit pattern of state and sample: a mode that does not exist counts as memory overwritten, a request
 /// that does not exist disarms.
@@ -304,7 +305,17 @@ pub unsafe extern "C" fn palpate_step(
     };
     let (next, played) = match cycle() {
         Ok(done) => done,
-        Err(error) => return error,
+        Err(error) => {
+            // The device was told 0 N: the next force grows from there, not from the last one. Without a state nothing grows.
+            let rested = || {
+                Ok(ServoState {
+                    force: Force::ZERO,
+                    ..unsafe { read(state) }?
+                })
+            };
+            unsafe { give(state, rested) };
+            return error;
+        }
     };
     let played = ServoCommand {
         force: played.force,

@@ -23,8 +23,8 @@ impl<'a> Device<'a> {
     pub fn new(table: Table<'a>, capabilities: &Capabilities) -> Option<Device<'a>> {
         Some(Device {
             table,
-            // 4 N at most, growing by 0.05 N a cycle and falling by 0.5 N; more than 20 cycles without a fresh report are a fault.
-            limits: Limits::for_playback(4.0).ok()?,
+            // 4 N at most, growing by 250 N/s and falling by 0.5 N a cycle; more than 20 cycles without a fresh report are a fault.
+            limits: Limits::for_playback(4.0, capabilities.period_us).ok()?,
             units: Units::new(capabilities).ok()?,
             state: State::default(),
             sequence: 0,

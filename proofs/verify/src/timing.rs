@@ -5,6 +5,7 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use super::{Check, Figure, Measured};
+use palpate::hid::simulated::PAPER;
 use palpate::hid::timing::{Budget, measure, paper};
 use palpate::servo::{Input, Limits, Mode, Request, Sample, State, Table, step};
 
@@ -32,7 +33,7 @@ const CYCLES: u64 = 100_000;
 fn steps() -> Measured {
     let loaded = paper::table()?;
     let table = loaded.table();
-    let limits = Limits::for_playback(4.0)?;
+    let limits = Limits::for_playback(4.0, PAPER.period_us)?;
     let mut state = State {
         mode: Mode::Armed,
         sequence: Some(0),
@@ -94,7 +95,7 @@ fn cycles() -> Measured {
     let timing = measure(
         paper::device(CYCLES),
         table,
-        Limits::for_playback(4.0)?,
+        Limits::for_playback(4.0, PAPER.period_us)?,
         CYCLES,
         Budget::of(BUDGET),
         None,

@@ -95,17 +95,18 @@ impl Limits {
         })
     }
 
-    /// The limits with which `palpate play` plays at 1 kHz: `force` (N); a growth of 0.25 N in a cycle, 250 N/s, at most an eighth of
-    /// `force`; a release in 8 cycles; 20 cycles without a fresh sample. The stiffest spring of the paper's display, 1200 N/m, grows
-    /// by 240 N/s under a hand of 0.2 m/s.
+    /// The limits with which `palpate play` plays on a device with a report each `period_us` (µs): `force` (N); a growth of 250 N/s, in
+    /// a cycle at most an eighth of `force`; a release in 8 cycles; 20 cycles without a fresh sample. The stiffest spring of the paper's
+    /// display, 1200 N/m, grows by 240 N/s under a hand of 0.2 m/s. A period of 0, which a session refuses, counts as 1 µs.
     ///
     /// # Errors
     /// [`InvalidLimits`].
     ///
     /// Implements: CLI-064.
-    pub fn for_playback(force: f32) -> Result<Limits, InvalidLimits> {
+    pub fn for_playback(force: f32, period_us: u16) -> Result<Limits, InvalidLimits> {
         let release = force / 8.0;
-        let slew = if release < 0.25 { release } else { 0.25 };
+        let growth = f32::from(period_us.max(1)) / 4000.0;
+        let slew = if release < growth { release } else { growth };
         Limits::new(force, slew, release, 20)
     }
 

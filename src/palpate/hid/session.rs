@@ -305,13 +305,17 @@ impl<'a, D: HapticDevice> Session<'a, D> {
             let request = if ask { Request::Arm } else { Request::None };
             match self.cycle(request) {
                 Err(error) => break End::Device(error),
-                Ok(cycle) if !each(&cycle, &self.counters) => break End::Asked,
-                Ok(_) => {}
-            }
-            if let Mode::Faulted(fault) = self.mode()
-                && self.state.force == Force::ZERO
-            {
-                break End::Fault(fault);
+                Ok(cycle) => {
+                    let is_enough = !each(&cycle, &self.counters);
+                    match self.mode() {
+                        // A fault is the cause, even if it was enough before the force was released.
+                        Mode::Faulted(fault) if is_enough || self.state.force == Force::ZERO => {
+                            break End::Fault(fault);
+                        }
+                        _ if is_enough => break End::Asked,
+                        _ => {}
+                    }
+                }
             }
         };
         match (self.stop(), end) {

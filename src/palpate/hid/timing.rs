@@ -30,20 +30,21 @@ struct HostClock<'a, D> {
 }
 
 impl<D> HostClock<'_, D> {
-    /// Sleeps until the next cycle is due.
-    fn wait(&mut self) {
-        let Some(period) = self.period else { return };
+    /// Sleeps until the next cycle is due; when it was due, if cycles have a pace.
+    fn wait(&mut self) -> Option<Duration> {
+        let period = self.period?;
         self.due += period;
+        let due = self.due;
         let now = self.began.elapsed();
         if let Some(left) = self.due.checked_sub(now) {
             std::thread::sleep(left);
         }
         let now = self.began.elapsed();
-        self.late.set(now.saturating_sub(self.due));
         // A cycle that was lost is not made up for.
         while self.due + period <= now {
             self.due += period;
         }
+        Some(due)
     }
 }
 
@@ -53,10 +54,15 @@ impl<D: HapticDevice> HapticDevice for HostClock<'_, D> {
     }
 
     fn read(&mut self, timeout: Duration) -> Result<Received, DeviceError> {
-        if !timeout.is_zero() {
-            self.wait();
+        if timeout.is_zero() {
+            return self.device.read(timeout);
         }
-        self.device.read(timeout)
+        let due = self.wait();
+        let received = self.device.read(timeout)?;
+        if let Some(due) = due {
+            self.late.set(self.began.elapsed().saturating_sub(due));
+        }
+        Ok(received)
     }
 
     fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {

@@ -137,6 +137,22 @@ fn run_with(defect: Defect) -> (End, Mode, [f64; 2], Counters) {
     (end, session.mode(), force, session.counters())
 }
 
+/// The force is released in ten cycles; whoever ends the session within them is told the fault all the same.
+// Verifies: HID-019.
+#[test]
+fn a_fault_is_the_end_of_a_session_that_is_ended_while_its_force_is_released() {
+    let mut session = begin(device(vec![(1200 * MS, Defect::DeviceFault(2 * MS))]));
+    let mut last = 0;
+    let end = session.run(|cycle, _| {
+        last = cycle.force.normal;
+        cycle.written < 1200 * MS || cycle.playing
+    });
+    assert!(
+        last > 0 && matches!(end, End::Fault(ServoFault::Device)),
+        "{last} {end}"
+    );
+}
+
 // Verifies: HID-016, HID-019, HID-020.
 #[test]
 fn every_fault_that_ends_a_session_is_named_and_leaves_the_motors_without_force() {

@@ -11,7 +11,7 @@ use crate::stats::binomial::{at_least, at_most, first};
 /// What a loop may take, and how sure the verdict must be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Budget {
-    cycle: Duration,
+    pub(super) cycle: Duration,
     percentile: f64,
     confidence_percent: f64,
     /// The most cycles of a measurement that may take longer; any number if `None`.

@@ -58,6 +58,7 @@ pub fn judge_log(text: &str, budget: Budget) -> Result<Judged, Refusal> {
                 let late = "a time above the one before";
                 return Err(Refusal::value(name, end, late).at(line));
             }
+            check_resolved(name, begin, end, &budget).map_err(|refusal| refusal.at(line))?;
             intervals.push(duration(name, line, end - begin)?);
         }
         let period = median(&intervals).ok_or_else(no_cycle)?;
@@ -66,6 +67,19 @@ pub fn judge_log(text: &str, budget: Budget) -> Result<Judged, Refusal> {
         }
     }
     responses.judged().ok_or_else(no_cycle)
+}
+
+/// Refuses an interval (s) that is so near the budget that the last place of its time stamps decides: an interval is kept to the
+/// nanosecond, but a Unix time has an `f64` only each 0.24 µs.
+fn check_resolved(name: &str, begin: f64, end: f64, budget: &Budget) -> Result<(), Refusal> {
+    let largest = begin.abs().max(end.abs());
+    let spacing = largest.next_up() - largest;
+    let from_budget = (end - begin - budget.cycle.as_secs_f64()).abs();
+    let resolution = spacing * 1e6;
+    let expected = format!(
+        "resolved better than to {resolution:.2} µs, which decides whether the budget is kept: subtract the first time from all"
+    );
+    Refusal::value(name, end, expected).when(spacing > 1e-9 && from_budget <= spacing)
 }
 
 fn duration(name: &str, line: usize, seconds: f64) -> Result<Duration, Refusal> {

@@ -39,6 +39,26 @@ fn durations_and_time_stamps_are_read_in_every_unit() {
 
 // Verifies: CLI-173.
 #[test]
+fn unix_times_are_judged_where_their_resolution_does_not_decide() {
+    let stamps = |from: u64, step: u64| {
+        let rows = (0..50).map(|cycle| format!("{}\n", from + step * cycle));
+        format!("time_ns\n{}", rows.collect::<String>())
+    };
+    for (step, misses) in [(900_000, 0), (1_100_000, 49)] {
+        for from in [0, 1_700_000_000_000_000_000] {
+            let judged = judged(&stamps(from, step));
+            assert_eq!(
+                (judged.cycles, judged.misses),
+                (49, misses),
+                "{from} {step}"
+            );
+        }
+    }
+    assert_eq!(judged(&stamps(0, 1_000_000)).misses, 0);
+}
+
+// Verifies: CLI-173.
+#[test]
 fn what_is_no_log_is_refused_with_its_line() {
     let refused = |text: &str| judge_log(text, Budget::of(MS)).unwrap_err().to_string();
     assert_cases("refused/timing_log.txt", "logs", refused);
