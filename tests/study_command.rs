@@ -234,7 +234,7 @@ fn assert_merges_alike(place: &Place, all: &str, results: &str) {
     }
 }
 
-// Verifies: STU-026, STU-027.
+// Verifies: STU-026, STU-027, STU-050.
 #[test]
 fn samples_that_are_missing_twice_there_or_foreign_are_named() {
     let place = finished("wrong");
@@ -275,10 +275,44 @@ fn samples_that_are_missing_twice_there_or_foreign_are_named() {
     let other = all.replace("\"rows\":8", "\"rows\":9");
     place.write("out/samples-2-of-2.jsonl", &other);
     place.refuses("study merge", str::to_string);
+    fs::remove_file(place.at("out/samples-2-of-2.jsonl")).unwrap();
+    assert_samples_of_another_program_are_refused(&place);
     // Samples of another study are not gone on with.
     place.write("out/samples-1-of-1.jsonl", &other);
     let error = place.refused("study run study.toml --out out");
     assert_has(&error, "belongs to a different request or version");
+}
+
+/// Asserts that samples of another program are refused though all their files agree, and those of another arithmetic keep it.
+fn assert_samples_of_another_program_are_refused(place: &Place) {
+    let file = "out/samples-1-of-1.jsonl";
+    let [all, results] = expected();
+    let version = env!("CARGO_PKG_VERSION");
+    for (key, own, foreign) in [
+        ("schema_version", "1", "2"),
+        ("program_version", &*format!("\"{version}\""), "\"0.0.1\""),
+    ] {
+        let keyed = |value: &str| format!("\"{key}\":{value},");
+        place.write(file, all.replacen(&keyed(own), &keyed(foreign), 1));
+        let error = place.refused("study merge out --out foreign.json");
+        let right = format!("{own}, which is what this program merges");
+        let expected = format!("{file}:1: {key} = {foreign}, but must be {right}");
+        assert_eq!(error, expected);
+    }
+    let header: serde_json::Value = serde_json::from_str(all.lines().next().unwrap()).unwrap();
+    let own = format!("\"arithmetic\":{}", header["arithmetic"]);
+    let foreign = "\"arithmetic\":\"that of another machine\"";
+    place.write(file, all.replacen(&own, foreign, 1));
+    place.succeed("study merge out --out foreign.json");
+    assert_eq!(
+        place.read("foreign.json"),
+        results.replacen(&own, foreign, 1)
+    );
+    assert_ne!(place.read("foreign.json"), *results);
+    // Samples without one.
+    place.write(file, all.replacen(&format!("{own},"), "", 1));
+    let error = place.refused("study merge out --out foreign.json");
+    assert_has(&error, "the first line names no arithmetic; compute");
 }
 
 // Verifies: STU-001, STU-011, STU-010, STU-024.

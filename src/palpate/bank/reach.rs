@@ -76,16 +76,17 @@ impl Reach<'_> {
     /// # Errors
     /// As [`Reach::gamma`]; a sweep that goes beyond the maps; an unknown depth of a bank whose reference has one depth.
     ///
-    /// Implements: BNK-071.
+    /// Implements: BNK-071, BNK-080, BNK-082.
     pub fn reached(&self) -> Result<Vec<Reached>, Refusal> {
         let (enough, middle) = (self.gamma()?, self.middle());
         let (maps, axes) = (self.bank.maps(), self.bank.axes());
+        let with = middle.iter().flatten().map(|&map| maps[map].table());
         let gammas = gammas_along(
             (self.sweep, self.bank.depth()),
             self.unknown,
             self.noise_sd,
             self.bank.reference().table(),
-            middle.iter().flatten().map(|&map| maps[map].table()),
+            (self.bank.base(), with),
         )?;
         let row = |(maps, gamma): (&Vec<usize>, &[f64])| {
             let [_, _, diameter, modulus] = self.bank.point(maps[0]);

@@ -544,6 +544,8 @@ impl<'a> Calibration<'a> {
     ///
     /// # Errors
     /// As [`Calibration::contact`].
+    ///
+    /// Implements: CAL-030.
     pub fn relaxation_terms(&self) -> Result<Vec<(Interval, Interval)>, Refusal> {
         let terms = match self.relaxation {
             Relaxation::None => 0,
@@ -552,14 +554,12 @@ impl<'a> Calibration<'a> {
         };
         let term = |at: usize| {
             let time = self.interval(|parts| parts.relaxation[2 * at])?;
-            let weight = match self.relaxation {
-                Relaxation::PowerLaw => {
-                    let exponent = self.interval(|parts| parts.relaxation[1])?;
-                    exponent.map(|of| of.map(libm::exp))
-                }
-                form => self.interval(|parts| form.terms(parts.relaxation)[at][0])?,
-            };
-            Ok(time.map(|of| of.map(libm::exp)).zip(weight))
+            let weight = self.interval(|parts| match self.relaxation {
+                Relaxation::PowerLaw => parts.relaxation[1],
+                form => libm::log(form.terms(parts.relaxation)[at][0]),
+            })?;
+            let pair = time.zip(weight);
+            Ok(pair.map(|(time, weight)| (time.map(libm::exp), weight.map(libm::exp))))
         };
         let all = (0..terms)
             .map(term)

@@ -6,6 +6,7 @@ use super::*;
 use crate::fem::{Contact, Model};
 use crate::phantom::Strain;
 use crate::stats::random::Generator;
+use palpate_asserts::assert_near;
 
 /// Times of a ramp, uneven.
 fn times() -> Vec<f64> {
@@ -297,16 +298,21 @@ fn a_mesh_without_a_point_under_the_lightest_touch_is_refused() {
     );
 }
 
-/// A sphere on a gel that relaxes by a power law, 2 s down and 10 s held; from a contact on.
+/// A sphere on a gel that relaxes by a power law, as [`relaxing`].
 fn held(amount: f64, air: f64) -> Curve {
+    let terms = Relaxation::PowerLaw.terms(&[libm::log(0.5), libm::log(0.25)]);
+    relaxing(&terms, amount, air)
+}
+
+/// A sphere on a gel that relaxes, 2 s down and 10 s held; from a contact on.
+fn relaxing(terms: &[[f64; 2]], amount: f64, air: f64) -> Curve {
     let times: Vec<f64> = (0..=480).map(|k| 0.025 * f64::from(k)).collect();
     let depths: Vec<f64> = times.iter().map(|t| 2e-3 * t.min(2.0)).collect();
     let elastic = |d: &f64| amount * (1e3 * (d - air)).max(0.0).powf(1.5);
     let elastic: Vec<f64> = depths.iter().map(elastic).collect();
-    let terms = Relaxation::PowerLaw.terms(&[libm::log(0.5), libm::log(0.25)]);
     let generator = Generator::new(43, 0);
     let noise = |k: usize| 2e-3 * generator.normal(0, k as u64);
-    let forces = relaxed(&terms, &times, &elastic);
+    let forces = relaxed(terms, &times, &elastic);
     let forces: Vec<f64> = forces
         .iter()
         .enumerate()
@@ -362,6 +368,28 @@ fn the_relaxation_of_a_sphere_is_found_with_its_form() {
     let rows = serde_json::to_value(found.rows(&[]).unwrap()).unwrap();
     assert_eq!(rows["relaxation"]["form"], "power_law");
     assert_eq!(rows["held"][2]["seconds"], 10.0);
+}
+
+// Verifies: CAL-030.
+#[test]
+fn no_interval_of_a_weight_reaches_below_zero() {
+    let curve = relaxing(&[[0.3, 2.0]], 0.2, 0.8e-3);
+    let mut found = calibrate(&curve, ALONE).unwrap();
+    assert_eq!(found.relaxation, Relaxation::Prony(1));
+    let weight = |found: &Calibration<'_>| found.relaxation_terms().unwrap()[0].1;
+    let own = weight(&found);
+    assert!(
+        (own.estimate - 0.3).abs() < own.ends[1] - own.ends[0],
+        "{own:?}"
+    );
+    // So much wider that the estimate less half the width would be half of it below 0.
+    let reach = libm::log(own.ends[1] / own.estimate);
+    found.fit.as_mut().unwrap().covariance *= (1.5 / reach).powi(2);
+    let wide = weight(&found);
+    for (end, factor) in wide.ends.into_iter().zip([-1.5, 1.5].map(libm::exp)) {
+        // A derivative by differences, and some roundings.
+        assert_near(end / (factor * own.estimate), 1.0, 1e-9);
+    }
 }
 
 // Verifies: CAL-040.

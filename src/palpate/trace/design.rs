@@ -27,6 +27,8 @@ pub struct Design {
     pub depth_errors: Vec<Vec<f64>>,
     /// The standard deviation of what the independent errors of the depths add, N, with the sign of ∂F_0/∂d; nothing if there are none.
     pub depth_noise: Vec<f64>,
+    /// Whether the samples are in the reverse order of the file.
+    pub is_reversed: bool,
 }
 
 impl Design {
@@ -56,6 +58,7 @@ impl Design {
             reference,
             depth_errors: Vec::new(),
             depth_noise,
+            is_reversed: record.is_reversed(),
         };
         design.add_depth_error(question, without, record)?;
         Ok(design)
@@ -105,6 +108,7 @@ impl Design {
             nuisances: all(&self.nuisances),
             depth_errors: all(&self.depth_errors),
             depth_noise: self.depth_noise.clone(),
+            is_reversed: self.is_reversed,
         }
     }
 
@@ -326,21 +330,23 @@ pub(crate) fn depth_slope(
     Ok(Some(scaled(&change, 1.0 / (to - from))))
 }
 
-/// γ of each map `with` an inclusion over the one `without`, along `sweep`, a record of which the forces count for nothing: beside what is
-/// `unknown`, in noise of `noise_sd` (N). `depth` (m) is that of a sweep whose samples have none.
+/// γ of each map `with` an inclusion, along `sweep`, a record of which the forces count for nothing, in noise of `noise_sd` (N). What is
+/// `unknown` bends the forces `without` inclusion; `base` are the same at the depths of the maps alone, over which these have their
+/// signals. `depth` (m) is that of a sweep whose samples have none.
 ///
 /// # Errors
 /// As [`Record::expected`]; an unknown depth of a map of one depth.
 ///
-/// Implements: BNK-082.
+/// Implements: BNK-080, BNK-082.
 pub fn gammas_along<'a>(
     (sweep, depth): (&Record, f64),
     unknown: &[Unknown],
     noise_sd: Force<f64>,
     without: &ForceTable,
-    with: impl IntoIterator<Item = &'a ForceTable>,
+    (base, with): (&ForceTable, impl IntoIterator<Item = &'a ForceTable>),
 ) -> Result<Vec<f64>, Refusal> {
     let (f0, samples) = (expected(sweep, without, depth)?, sweep.positions().len());
+    let none = expected(sweep, base, depth)?;
     let slope = || slope(sweep, without, depth, expected);
     let nuisances = nuisances_of(unknown, (&f0, samples), slope)?;
     let white = |signal: &[f64]| whitened(signal, samples, noise_sd);
@@ -348,7 +354,7 @@ pub fn gammas_along<'a>(
     let space = Nuisances::new(&mut nuisances, f0.len()).map_err(refused)?;
     let gamma = |map| {
         let f1 = expected(sweep, map, depth)?;
-        Ok(space.project(&mut white(&difference(&f1, &f0))))
+        Ok(space.project(&mut white(&difference(&f1, &none))))
     };
     with.into_iter().map(gamma).collect()
 }

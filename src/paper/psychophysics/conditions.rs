@@ -1,9 +1,11 @@
 //! Whether conditions differ, with the subject as block.
 
+use std::ops::Range;
+
 use serde::Serialize;
 
 use super::rates::{Bounds, CONFIDENCE};
-use super::{AnswerTable, Column, Condition, Result};
+use super::{AnswerTable, Column, Condition, Result, Subject};
 use palpate::stats::noncentral::student_point;
 
 /// Most subjects whose exchanges of signs are all tried: a million.
@@ -77,26 +79,29 @@ fn compare(
     first: &Condition,
     second: &Condition,
 ) -> Result<Option<ConditionComparison>> {
-    // One row a subject in both, one column an inclusion.
-    let mut differences: Vec<Vec<f64>> = Vec::new();
-    for one in &first.subjects {
-        let other = second.subjects.iter().find(|other| other.name == one.name);
-        differences.extend(other.map(|other| {
-            let pairs = one.shares().zip(other.shares());
-            pairs.map(|(a, b)| a - b).collect()
-        }));
-    }
-    if differences.is_empty() {
+    let in_both = first.subjects.iter().filter_map(|one| {
+        let mut others = second.subjects.iter();
+        Some([one, others.find(|other| other.name == one.name)?])
+    });
+    let in_both: Vec<[&Subject; 2]> = in_both.collect();
+    if in_both.is_empty() {
         return Ok(None);
     }
+    // One row a subject in both, one column an inclusion.
+    let row = |[one, other]: &[&Subject; 2]| {
+        let pairs = one.shares().zip(other.shares());
+        pairs.map(|(a, b)| a - b).collect()
+    };
+    let differences: Vec<Vec<f64>> = in_both.iter().map(row).collect();
     let overall = differences
         .iter()
         .map(|row| row.iter().sum::<f64>() / inclusions.len() as f64);
     let column = |(column, inclusion): (usize, &Column)| {
         let differences: Vec<f64> = differences.iter().map(|row| row[column]).collect();
+        let do_vary = do_vary(&in_both, column..column + 1);
         Ok(InclusionDifference {
             inclusion: inclusion.name.clone(),
-            difference: difference(&differences)?,
+            difference: difference(&differences, do_vary)?,
         })
     };
     let by_inclusion = inclusions.iter().enumerate().map(column);
@@ -104,20 +109,45 @@ fn compare(
         first: first.name.clone(),
         second: second.name.clone(),
         subjects: differences.len(),
-        overall: difference(&overall.collect::<Vec<_>>())?,
+        overall: difference(
+            &overall.collect::<Vec<_>>(),
+            do_vary(&in_both, 0..inclusions.len()),
+        )?,
         p_value_holm: None,
         by_inclusion: by_inclusion.collect::<Result<_>>()?,
     }))
 }
 
+/// Whether the difference between two conditions in the share of right answers to some inclusions is another for one subject than for
+/// another; in whole numbers, since differences of quotients are rounded.
+///
 /// Implements: PSY-050.
-fn difference(differences: &[f64]) -> Result<Difference> {
+fn do_vary(in_both: &[[&Subject; 2]], columns: Range<usize>) -> bool {
+    let fraction = |of: &[&Subject; 2]| {
+        let right = |of: &Subject| -> i128 {
+            let counts = of.correct[columns.clone()].iter();
+            counts.map(|&k| i128::from(k)).sum()
+        };
+        let [own_right, other_right] = of.map(right);
+        let [trials, other_trials] = of.map(|of| i128::from(of.trials));
+        let numerator = own_right * other_trials - other_right * trials;
+        (numerator, trials * other_trials)
+    };
+    let fractions: Vec<_> = in_both.iter().map(fraction).collect();
+    let mut pairs = fractions.windows(2);
+    pairs.any(|of| of[0].0 * of[1].1 != of[1].0 * of[0].1)
+}
+
+/// The mean of the differences of several subjects, with an interval if they vary.
+///
+/// Implements: PSY-050.
+fn difference(differences: &[f64], do_vary: bool) -> Result<Difference> {
     let count = differences.len() as f64;
     let mean = differences.iter().sum::<f64>() / count;
     let squares = differences.iter().map(|d| (d - mean) * (d - mean));
     let spread = squares.sum::<f64>();
     let mut bounds = None;
-    if differences.len() > 1 && spread > 0.0 {
+    if do_vary {
         let error = libm::sqrt(spread / (count - 1.0) / count);
         let reach = student_point(0.5 * (1.0 - CONFIDENCE), count - 1.0)? * error;
         let (lower, upper) = (mean - reach, mean + reach);

@@ -133,15 +133,18 @@ pub struct Clustered {
 ///
 /// Implements: PSY-023.
 pub fn clustered(counts: &[(u32, u32)], pooled: &Rate) -> Result<Option<Clustered>> {
+    let (correct, trials) = (u128::from(pooled.correct), u128::from(pooled.trials));
+    let is_pooled = |&(k, n): &(u32, u32)| u128::from(k) * trials == correct * u128::from(n);
+    // In whole numbers: a quotient is rounded, and what is left of it looks like a difference.
+    if counts.len() < 2 || counts.iter().all(is_pooled) {
+        return Ok(None);
+    }
     let subjects = counts.len() as f64;
     let squares = counts.iter().map(|&(k, n)| {
         let excess = f64::from(k) - pooled.rate * f64::from(n);
         excess * excess
     });
     let spread = squares.sum::<f64>();
-    if counts.len() < 2 || spread == 0.0 {
-        return Ok(None);
-    }
     let standard_error = libm::sqrt(subjects / (subjects - 1.0) * spread) / pooled.trials as f64;
     let reach = student_point(0.5 * (1.0 - CONFIDENCE), subjects - 1.0)? * standard_error;
     let bounds = Bounds {

@@ -61,7 +61,7 @@ impl AnswerTable {
     pub fn from_csv(text: &str, file: &str) -> Result<AnswerTable, Refusal> {
         let at = |line| move |refusal: Refusal| refusal.at(line).in_file(file);
         let ((header_line, header), rows) = header_and_rows(text);
-        let (inclusions, subjects) = match trials::places(header) {
+        let (inclusions, subjects) = match trials::places(header).map_err(at(header_line))? {
             Some(places) => {
                 let counts = trials::counts(header, places, rows);
                 counts.map_err(|refusal| refusal.in_file(file))?

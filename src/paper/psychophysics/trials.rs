@@ -6,12 +6,22 @@ use super::counts::{Column, MOST_TRIALS, Subject, column, plain, refused};
 use palpate::csv::{counted, split};
 use palpate::refusal::Refusal;
 
-/// The names of the columns: who answered, what was felt, the inclusion of the pair, whether the answer was right.
-const NAMES: [&[&str]; 4] = [
-    &["subject", "participant", "subject_id", "participant_id"],
-    &["condition"],
-    &["inclusion", "stimulus"],
-    &["correct", "corr", "key_resp.corr", "response.corr"],
+/// What the columns hold: who answered, what was felt, the inclusion of the pair, whether the answer was right. Of each the names, and
+/// those that count where there is none of these: jsPsych has a `stimulus` in every file.
+const COLUMNS: [(&str, [&[&str]; 2]); 4] = [
+    (
+        "subject",
+        [
+            &["subject", "participant", "subject_id", "participant_id"],
+            &[],
+        ],
+    ),
+    ("condition", [&["condition"], &[]]),
+    ("inclusion", [&["inclusion"], &["stimulus"]]),
+    (
+        "answer",
+        [&["correct", "corr", "key_resp.corr", "response.corr"], &[]],
+    ),
 ];
 /// An answer in small letters, and whether it is right.
 const ANSWERS: [(&str, bool); 6] = [
@@ -24,24 +34,44 @@ const ANSWERS: [(&str, bool); 6] = [
 ];
 
 /// Where a header of trials has its columns; none of another header.
-pub(super) fn places(header: &str) -> Option<[usize; 4]> {
+///
+/// # Errors
+/// Two columns of the same kind.
+///
+/// Implements: PSY-021.
+pub(super) fn places(header: &str) -> Result<Option<[usize; 4]>, Refusal> {
     let fields: Vec<&str> = split(header, ',').collect();
-    let is_named = |names: &[&str], field: &&str| {
-        let mut names = names.iter();
-        names.any(|name| name.eq_ignore_ascii_case(field))
-    };
-    let place = |names: &[&str]| fields.iter().position(|field| is_named(names, field));
-    let found = NAMES.map(place);
     let [
         Some(subject),
         Some(condition),
         Some(inclusion),
         Some(correct),
-    ] = found
+    ] = COLUMNS.map(|(kind, names)| place(&fields, kind, names))
     else {
-        return None;
+        return Ok(None);
     };
-    Some([subject, condition, inclusion, correct])
+    Ok(Some([subject?, condition?, inclusion?, correct?]))
+}
+
+/// Where a header has the column of a kind, by the first names that are there.
+fn place(header: &[&str], kind: &str, names: [&[&str]; 2]) -> Option<Result<usize, Refusal>> {
+    names.into_iter().find_map(|names| {
+        let is_named = |place: &usize| {
+            let mut names = names.iter();
+            names.any(|name| name.eq_ignore_ascii_case(header[*place]))
+        };
+        let found: Vec<usize> = (0..header.len()).filter(is_named).collect();
+        match found[..] {
+            [] => None,
+            [only] => Some(Ok(only)),
+            [first, second, ..] => {
+                let column = |place: usize| format!("{} ({:?})", place + 1, header[place]);
+                let (first, second) = (column(first), column(second));
+                let found = format!("columns {first} and {second} for the {kind} in the header");
+                Some(Err(Refusal::state(found, "keep one of them")))
+            }
+        }
+    })
 }
 
 /// The line of a subject's first answer, the condition, and the counts.

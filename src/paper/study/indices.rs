@@ -9,8 +9,8 @@ use palpate::stats::random::Generator;
 ///
 /// Implements: STU-040.
 const RESAMPLES: u64 = 400;
-/// The resamples left out at each end of an interval of 95 %.
-const LEFT_OUT: usize = 10;
+/// One of so many resamples is left out at each end of an interval of 95 %.
+const LEFT_OUT: usize = 40;
 /// The stream of the generator that draws the rows.
 const STREAM: u64 = 0x50B0;
 
@@ -35,8 +35,8 @@ pub struct Index {
 }
 
 /// The indices of each group of inputs, from the values of a quantity in rows: in the first sample, in the second one, and for each group
-/// in the first with the inputs of the group from the second. `None` where the quantity is the same in all of them, or rows are fewer than
-/// two. `seed` draws the resamples.
+/// in the first with the inputs of the group from the second. `None` where the quantity is the same in all of them or in all rows of each
+/// resample, or rows are fewer than two. `seed` draws the resamples.
 ///
 /// ```
 /// use palpate_paper::study::indices;
@@ -67,16 +67,22 @@ pub fn indices(rows: &[&[f64]], seed: u64) -> Option<Vec<Index>> {
             rows[((u128::from(word) * rows.len() as u128) >> 64) as usize]
         });
         // A resample of equal values says nothing.
-        let shares = estimates(&drawn.collect::<Vec<_>>())?;
+        let Some(shares) = estimates(&drawn.collect::<Vec<_>>()) else {
+            continue;
+        };
         for (kept, shares) in resampled.iter_mut().zip(shares) {
             for (kept, share) in kept.iter_mut().zip(shares) {
                 kept.push(share);
             }
         }
     }
+    if resampled.iter().flatten().any(Vec::is_empty) {
+        return None;
+    }
     let estimate = |value: f64, mut kept: Vec<f64>| {
         kept.sort_by(f64::total_cmp);
-        let (lower, upper) = (kept[LEFT_OUT], kept[kept.len() - 1 - LEFT_OUT]);
+        let left_out = kept.len() / LEFT_OUT;
+        let (lower, upper) = (kept[left_out], kept[kept.len() - 1 - left_out]);
         Estimate {
             value,
             lower,

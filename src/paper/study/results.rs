@@ -86,7 +86,7 @@ pub struct StudyResults {
     pub schema_version: u64,
     /// The version of the program.
     pub program_version: String,
-    /// The arithmetic of the solver.
+    /// The arithmetic of the solver that computed the samples.
     pub arithmetic: String,
     /// What was varied.
     pub plan: StudyPlan,
@@ -150,8 +150,8 @@ impl StudyResults {
     /// How many failures are told with their reason.
     pub const TOLD: usize = 20;
 
-    /// The results of a study. `columns` gives the values of some quantities in all samples, a NaN for those that failed; it is called for
-    /// one block of quantities after another.
+    /// The results of a study whose samples were computed with `arithmetic`. `columns` gives the values of some quantities in all samples,
+    /// a NaN for those that failed; it is called for one block of quantities after another.
     ///
     /// # Errors
     /// Those of `columns`.
@@ -159,6 +159,7 @@ impl StudyResults {
     /// Implements: STU-040, STU-043, STU-032, STU-050.
     pub fn new<E: From<Refusal>>(
         sampler: &Sampler<'_>,
+        arithmetic: &str,
         failures: &[Failure],
         columns: impl Fn(Range<usize>) -> Result<Vec<Vec<f64>>, E>,
     ) -> Result<StudyResults, E> {
@@ -185,7 +186,7 @@ impl StudyResults {
             schema: Self::SCHEMA.into(),
             schema_version: Self::SCHEMA_VERSION,
             program_version: env!("CARGO_PKG_VERSION").into(),
-            arithmetic: palpate::fem::arithmetic().into(),
+            arithmetic: arithmetic.into(),
             plan: plan.clone(),
             groups: design.groups().iter().map(names).collect(),
             samples,

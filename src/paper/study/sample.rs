@@ -184,7 +184,7 @@ impl<'a> Sampler<'a> {
         let mut settings = self.plan.settings;
         settings.noise_sd_n = of_study(NOISE_SD, settings.noise_sd_n);
         let (mut maps, mut depths) = (Vec::new(), Vec::new());
-        for own in self.plan.all_phantoms() {
+        for (at, own) in self.plan.all_phantoms().enumerate() {
             let solve = || {
                 let phantom = self.plan.changed(own, &values)?;
                 let model = Model::new(&phantom, mesh * self.plan.mesh_size, self.plan.contact)?;
@@ -196,7 +196,7 @@ impl<'a> Sampler<'a> {
                 |error| Refusal::state(error, "").of_part(&format!("phantom {}", own.name()));
             let (map, inclusion) = solved.map_err(of_phantom)?;
             maps.push(map);
-            depths.extend(inclusion);
+            depths.extend(inclusion.filter(|_| at > 0));
         }
         let names = compared(self.plan, &self.answers).into_iter();
         let compared: Vec<_> = names.map(|(at, name)| (name, &maps[1 + at])).collect();

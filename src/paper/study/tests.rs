@@ -76,6 +76,22 @@ fn a_quantity_that_does_not_vary_has_no_indices() {
     assert_eq!(indices(&[&[1.0, 2.0, 2.0][..]], 1), None);
 }
 
+// (1 − 1/50)⁵⁰ = 36 % of the resamples are without the one row that differs; they are left out.
+// Verifies: STU-040.
+#[test]
+fn a_quantity_that_seldom_varies_has_indices() {
+    let mut rows = vec![[1.0; 3]; 50];
+    rows[20] = [2.0, 3.0, 2.5];
+    let rows: Vec<&[f64]> = rows.iter().map(|row| &row[..]).collect();
+    let [index] = indices(&rows, 1).unwrap()[..] else {
+        panic!("one group")
+    };
+    for of in [index.first_order, index.total] {
+        let holds = of.lower <= of.value && of.value <= of.upper;
+        assert!(holds && of.lower < of.upper, "{of:?}");
+    }
+}
+
 // A change with the other sign has the other index, and its interval is turned round.
 // Verifies: STU-040.
 #[test]
@@ -296,7 +312,7 @@ pub fn results(plan: &StudyPlan, count: usize) -> StudyResults {
     }
     let column = |quantity| sampled.iter().map(|of| of[quantity]).collect();
     let columns = |range: std::ops::Range<usize>| Ok::<_, Refusal>(range.map(column).collect());
-    StudyResults::new(&sampler, &failures, columns).unwrap()
+    StudyResults::new(&sampler, palpate::fem::arithmetic(), &failures, columns).unwrap()
 }
 
 // Verifies: STU-001, STU-021, STU-030, STU-043.
@@ -393,6 +409,21 @@ fn what_rests_on_the_noise_takes_that_of_the_sample() {
         assert_near(gamma * noise, of_low[2] * low, 1e-12);
         assert_near(needed, of_low[4], 1e-12);
     }
+}
+
+// Verifies: STU-031.
+#[test]
+fn the_inclusion_of_the_reference_has_no_part_in_the_detectable_depth() {
+    let mut plan = plan(vec![near("noise", NOISE_SD, 1e-6)]);
+    let [deep, shallow, middle] = ["6.6", "2.6", "4.6"].map(|name| Phantom::builtin(name).unwrap());
+    (plan.reference, plan.phantoms) = (deep, vec![shallow, middle]);
+    plan.mesh_size = 3e-3;
+    let sampler = Sampler::new(&plan).unwrap();
+    let mut kinds = sampler.quantities().iter().map(|of| &of.kind);
+    let place = kinds.position(|kind| *kind == Kind::DetectableDepthM);
+    // Both are found in so little noise.
+    let depth = sampler.sample(0).unwrap()[place.unwrap()];
+    assert_near(depth, 4.6e-3, 1e-15);
 }
 
 // Verifies: STU-031, STU-032, STU-043.

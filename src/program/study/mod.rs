@@ -123,7 +123,7 @@ fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
     let sampler = Sampler::new(&plan)?;
     let failures = records.failures(&sampler)?;
     let columns = |range| records.columns(&sampler, range);
-    let results = StudyResults::new(&sampler, &failures, columns)?;
+    let results = StudyResults::new(&sampler, records.arithmetic()?, &failures, columns)?;
     // Keys are strings, and all numbers are finite.
     let text = serde_json::to_string(&results).unwrap_or_default() + "\n";
     write(&arguments.out, &text)?;

@@ -6,17 +6,20 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::CliError;
 use crate::error::refuse;
+use crate::output::Envelope;
 use palpate::file::from_json;
 use palpate::journal::take_lines;
-use palpate::refusal::Refusal;
+use palpate::refusal::{Refusal, shortened};
 use palpate_paper::study::{Failure, Sampler, StudyPlan};
 
 /// How the first line of each file begins.
 const BEGINNING: &str = "{\"schema\":\"palpate-study-samples\"";
+/// The keys of the first line whose values must be those that this program writes: its numbers may be others.
+const OF_PROGRAM: [&str; 2] = ["schema_version", "program_version"];
 
 /// What the first line says.
 #[derive(Serialize)]
@@ -108,7 +111,7 @@ impl Records {
     /// The files in `folders`, all of one study.
     ///
     /// # Errors
-    /// A folder without samples; a file of another study, with what is different.
+    /// A folder without samples; a file of another study or program, with what is different.
     ///
     /// Implements: STU-027.
     pub fn find(folders: &[PathBuf]) -> Result<Records, CliError> {
@@ -135,6 +138,18 @@ impl Records {
     pub fn plan(&self) -> Result<StudyPlan, CliError> {
         let plan = StudyPlan::deserialize(&self.header["plan"]);
         plan.map_err(CliError::refused(self.files[0].display()))
+    }
+
+    /// The arithmetic of the samples, which may not be that of this machine.
+    ///
+    /// # Errors
+    /// A first line that names none.
+    ///
+    /// Implements: STU-050.
+    pub fn arithmetic(&self) -> Result<&str, CliError> {
+        let arithmetic = self.header["arithmetic"].as_str();
+        let missing = "the first line names no arithmetic; compute the samples again";
+        arithmetic.ok_or_else(|| CliError::refused(self.files[0].display())(missing))
     }
 
     /// Hands each record to `take`, with the number of its file.
@@ -255,6 +270,8 @@ fn header(path: &Path) -> Result<Value, CliError> {
     match header {
         Some(Value::Object(mut header)) if line.starts_with(BEGINNING) => {
             header.remove("shard");
+            let file = path.display().to_string();
+            check_program(&header).map_err(|refusal| refusal.at(1).in_file(file))?;
             Ok(header.into())
         }
         _ => refuse!(
@@ -262,6 +279,21 @@ fn header(path: &Path) -> Result<Value, CliError> {
             path.display()
         ),
     }
+}
+
+/// Refuses the samples of another program.
+///
+/// Implements: STU-027.
+fn check_program(header: &Map<String, Value>) -> Result<(), Refusal> {
+    let own = Envelope::job("", Map::new());
+    // Keys are strings, and there are no numbers that JSON lacks.
+    let own = serde_json::to_value(own).unwrap_or_default();
+    OF_PROGRAM.into_iter().try_for_each(|key| {
+        let found = header.get(key).unwrap_or(&Value::Null);
+        let expected = format!("{}, which is what this program merges", own[key]);
+        let refusal = Refusal::value(key, shortened(&found.to_string()), expected);
+        refusal.when(*found != own[key])
+    })
 }
 
 /// The first key whose value differs, with those around it.

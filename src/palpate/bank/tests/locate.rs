@@ -69,6 +69,31 @@ fn a_record_of_one_place_is_not_judged() {
     assert_eq!((&*wide.causes, narrow.causes[0]), (&[][..], Cause::Narrow));
 }
 
+// Verifies: TRC-075, TRC-016, CLI-143.
+#[test]
+fn a_search_by_a_sensor_set_to_zero_never_finds_that_there_is_nothing() {
+    let bank = all();
+    let mut zeroed = by_map(&bank);
+    zeroed.question.is_zeroed = true;
+    // In air, where the noise is alone, and on the gel.
+    for gain in [0.0, 1.0] {
+        let nothing = record(&reference(), Some(2), 0.0, gain);
+        let found = zeroed.locate(&nothing).unwrap();
+        assert_eq!(
+            (found.decision, &found.causes[..]),
+            (None, &[Cause::Zeroed][..])
+        );
+        let rows = found.rows(&bank).unwrap();
+        assert!(rows.get("posterior_h1").unwrap().is_f64());
+    }
+    let with = map(Some((1.3, 3.5, 8.0)), &[4e-3]);
+    let found = zeroed.locate(&record(&with, Some(1), -1.0, 1.1)).unwrap();
+    assert_eq!(
+        (found.decision, &found.causes[..]),
+        (Some(Decision::Inclusion), &[][..])
+    );
+}
+
 pub const USUAL: &[Unknown] = &[Unknown::Offset, Unknown::Drift, Unknown::Gain];
 
 pub fn question<'a>(unknown: &'a [Unknown], criterion: Criterion) -> Question<'a> {
@@ -349,8 +374,8 @@ fn gamma_along_a_path_is_that_of_all_its_passes() {
     assert_eq!(sweep.positions().len(), 2 * laterals.len());
     let gamma = |unknown: &[Unknown]| {
         let noise_sd = Force::new(0.2, 0.1);
-        let tables = (without.table(), [with.table()]);
-        gammas_along((&sweep, 0.0), unknown, noise_sd, tables.0, tables.1).unwrap()[0]
+        let over = (without.table(), [with.table()]);
+        gammas_along((&sweep, 0.0), unknown, noise_sd, over.0, over).unwrap()[0]
     };
     let signal = with.table().minus(without.table()).unwrap();
     let channels = [(signal.lateral().unwrap(), 0.2), (signal.normal(), 0.1)];
@@ -369,6 +394,36 @@ fn gamma_along_a_path_is_that_of_all_its_passes() {
     // An offset of either force takes its mean over both passes.
     assert_near(gamma(&[Unknown::Offset]), squares(1.0).sqrt(), 1e-9);
     assert!(squares(1.0) < 0.95 * squares(0.0));
+}
+
+// Verifies: BNK-080, BNK-082, BNK-071. Of a gel whose force bends with the depth the reference has more rows than the maps.
+#[test]
+fn an_inclusion_without_a_signal_is_not_reached_between_the_rows_of_the_maps() {
+    use crate::simulation::Path;
+    let gel = |inclusion, rows: &[f64]| {
+        let of = map(inclusion, rows);
+        let bent = |depth: f64, x: f64| [1e3 * depth * x, 2.5e5 * depth * depth];
+        let table = table_of(rows, of.table().laterals(), bent);
+        measured(of.phantom().cloned(), table)
+    };
+    let maps = [3.0, 4.0].map(|depth| gel(Some((0.0, depth, 8.0)), &[2e-3, 3e-3]));
+    let reference = gel(None, &[1.7e-3, 2e-3, 2.5e-3, 3e-3, 3.3e-3]);
+    let bank = Bank::new(reference, maps.into()).unwrap();
+    let between = Path::passes(&[2.5e-3], [-3e-3, 3e-3], 1e-2, 100.0).unwrap();
+    let sweep = between.sweep().unwrap();
+    let everything = [Unknown::Offset, Unknown::Gain, Unknown::Depth];
+    for unknown in [&[][..], &everything] {
+        let reach = Reach {
+            bank: &bank,
+            sweep: &sweep,
+            noise_sd: Force::new(0.02, 0.02),
+            max_false_alarm: 0.01,
+            max_miss: 0.05,
+            unknown,
+        };
+        let found = reach.reached().unwrap();
+        assert_eq!((&found[0].gamma[..], found[0].depth), (&[0.0; 2][..], None));
+    }
 }
 
 // Verifies: BNK-070, BNK-071.

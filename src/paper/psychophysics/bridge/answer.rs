@@ -203,7 +203,7 @@ impl ConventionFit {
 pub struct CommonFit {
     /// The noise, N: of one position for a peak, of the filter's output otherwise.
     pub noise_n: f64,
-    /// With the subjects as the sample, N; `None` for one subject.
+    /// With the subjects as the sample, N; `None` for one subject or if none differs.
     pub noise_bounds_n: Option<Bounds>,
     /// The share of right answers at each inclusion.
     pub predicted: Vec<f64>,
@@ -214,7 +214,7 @@ pub struct CommonFit {
     /// Its p-value with the dispersion of the condition, by the F law.
     pub p_value_dispersed: Option<f64>,
     /// The p-value of Hotelling's T² of the subjects' shares against the predicted ones, which lets the
-    /// shares of a subject be correlated; `None` with too few subjects.
+    /// shares of a subject be correlated; `None` with too few subjects or if none differs at an inclusion.
     pub p_value_clustered: Option<f64>,
     /// Akaike's criterion against a share of its own for each subject and inclusion.
     pub aic: f64,

@@ -131,13 +131,22 @@ fn fit(
     Ok(Some((log, fit)))
 }
 
+/// Whether all subjects have the same share of right answers to an inclusion; the counts are whole numbers, and so are their products.
+fn is_shared(observed: &Observations, inclusion: usize) -> bool {
+    let mut pairs = observed.subjects.windows(2);
+    pairs.all(|pair| {
+        let (one, other) = (pair[0][inclusion], pair[1][inclusion]);
+        one.right * other.trials() == other.right * one.trials()
+    })
+}
+
 /// Student's interval of ln σ by the subjects' scores, σ: with U_i the derivative of the log-likelihood of
-/// subject i and I the information, the variance is m/(m−1) Σ U_i²/I².
+/// subject i and I the information, the variance is m/(m−1) Σ U_i²/I². `None` where no subject differs from the others.
 ///
 /// Implements: PSY-073.
 fn noise_bounds(signals: &Signals, observed: &Observations, log: f64) -> Result<Option<Bounds>> {
     let subjects = observed.subjects.len() as f64;
-    if observed.subjects.len() < 2 {
+    if (0..signals.0.len()).all(|inclusion| is_shared(observed, inclusion)) {
         return Ok(None);
     }
     let sensitivity = libm::exp(log);
@@ -169,7 +178,8 @@ fn noise_bounds(signals: &Signals, observed: &Observations, log: f64) -> Result<
 fn hotelling(signals: &Signals, observed: &Observations) -> Result<Option<f64>> {
     let inclusions = signals.0.len();
     let (m, q) = (observed.subjects.len() as f64, inclusions as f64 - 1.0);
-    if observed.subjects.len() <= inclusions {
+    let is_shared = |inclusion| is_shared(observed, inclusion);
+    if observed.subjects.len() <= inclusions || (0..inclusions).any(is_shared) {
         return Ok(None);
     }
     let shares = DMatrix::from_fn(observed.subjects.len(), inclusions, |subject, inclusion| {

@@ -339,6 +339,35 @@ fn noise_at_one_inclusion_has_the_subjects_as_the_sample() {
     }
 }
 
+// 29/35 is no binary number: what is left of it after rounding is no difference between subjects.
+// Verifies: PSY-073, PSY-076, PSY-060.
+#[test]
+fn subjects_who_do_not_differ_say_nothing_of_the_next() {
+    let fits = |last: u32| {
+        let rows = (1..=5).map(|subject| {
+            let of = if subject == 5 { last } else { 24 };
+            format!("{subject},a,35,29,{of}\n")
+        });
+        let text = format!("subject,condition,trials,2,4\n{}", rows.collect::<String>());
+        let table = AnswerTable::from_csv(&text, "t").unwrap();
+        let condition = &table.conditions()[0];
+        let observed = Observations::new(condition, &[0, 1]).unwrap();
+        let found = common(&Signals(vec![0.3, 0.2]), &observed)
+            .unwrap()
+            .unwrap();
+        let (rate, clustered) = pooled(condition, 0).unwrap();
+        let noise = InclusionNoise::new(0.3, &rate, clustered);
+        assert_eq!(noise.clustered_bounds_n, None);
+        [
+            found.noise_bounds_n.is_some(),
+            found.p_value_clustered.is_some(),
+        ]
+    };
+    assert_eq!(fits(24), [false, false]);
+    // At one inclusion they differ.
+    assert_eq!(fits(25), [true, false]);
+}
+
 /// Shares of right answers within half an answer of the model's with 5 % lapses: a deviance near 0, whose law is nearly that of chi-square.
 /// Its expected deviance is above the degrees of freedom by about Σ (1 − p(1−p))/(6np(1−p)) < 0.01 here.
 // Verifies: PSY-076.

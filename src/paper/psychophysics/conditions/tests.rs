@@ -85,4 +85,22 @@ fn conditions_without_a_common_subject_are_not_compared() {
     // One subject, or equal differences: no interval.
     let overall = compared("1,a,30,30\n1,b,30,28\n")[0].overall;
     assert_eq!((overall.bounds, overall.p_value), (None, Some(1.0)));
+    // Each is better by a third, and by a tenth of other shares and trials, though no double is either.
+    for (a, b) in [
+        (["30,30"; 3], ["30,20"; 3]),
+        (["30,27", "10,5", "20,8"], ["30,24", "20,8", "10,3"]),
+    ] {
+        let rows = |name: &str, of: [&str; 3]| {
+            let rows = (1..)
+                .zip(of)
+                .map(|(subject, of)| format!("{subject},{name},{of}\n"));
+            rows.collect::<String>()
+        };
+        let [found] = &compared(&(rows("a", a) + &rows("b", b)))[..] else {
+            panic!("two conditions")
+        };
+        let alone = found.by_inclusion[0].difference;
+        assert_eq!((found.overall.bounds, alone.bounds), (None, None), "{a:?}");
+        assert_eq!(found.overall.p_value, Some(2.0 / 8.0));
+    }
 }

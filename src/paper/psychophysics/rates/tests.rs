@@ -110,6 +110,15 @@ fn one_subject_or_equal_ones_say_nothing_of_the_next() {
     let same = Rate::new(50, 60).unwrap();
     assert_eq!(clustered(&[(50, 60)], &same), Ok(None));
     assert_eq!(clustered(&[(25, 30), (25, 30)], &same), Ok(None));
+    // 29/35 is no binary number: 35 times its double is not 29.
+    let shares = [(29, 35), (58, 70)];
+    assert_eq!(
+        clustered(&shares[..1].repeat(2), &Rate::new(58, 70).unwrap()),
+        Ok(None)
+    );
+    assert_eq!(clustered(&shares, &Rate::new(87, 105).unwrap()), Ok(None));
+    let differs = clustered(&[(29, 35), (57, 70)], &Rate::new(86, 105).unwrap());
+    assert!(differs.unwrap().is_some());
     assert_eq!(dispersion(&[(50, 60)]), Ok(None));
     assert_eq!(dispersion(&[(30, 30), (30, 30)]), Ok(None));
     assert_eq!(dispersion(&[(0, 30), (0, 30)]), Ok(None));

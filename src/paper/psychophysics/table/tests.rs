@@ -88,6 +88,46 @@ fn what_is_no_table_is_refused_with_line_column_and_value() {
     assert!(AnswerTable::from_csv("", "t").is_err());
 }
 
+/// Asserts that two columns of one kind are refused, but for the stimulus beside the inclusion.
+fn assert_columns_are_told_apart() {
+    let read = |header: &str, row: &str| {
+        let text = format!("# mine\n{header}\n{row}\n");
+        AnswerTable::from_csv(&text, "t.csv").map_err(|refusal| refusal.to_string())
+    };
+    for (header, expected) in [
+        (
+            "participant,condition,inclusion,key_resp.corr,response.corr",
+            "4 (\"key_resp.corr\") and 5 (\"response.corr\") for the answer",
+        ),
+        (
+            "participant,condition,stimulus,Correct,SUBJECT",
+            "1 (\"participant\") and 5 (\"SUBJECT\") for the subject",
+        ),
+        (
+            "subject,inclusion,corr,inclusion,condition",
+            "2 (\"inclusion\") and 4 (\"inclusion\") for the inclusion",
+        ),
+    ] {
+        let message = format!("t.csv:2: columns {expected} in the header; keep one of them");
+        assert_eq!(read(header, "1,2.6,1,1,1"), Err(message));
+    }
+    // As jsPsych writes it.
+    let one = read("subject,condition,inclusion,correct", "1,a,2.6,1");
+    for (header, row) in [
+        (
+            "stimulus,subject,condition,inclusion,correct",
+            "a.png,1,a,2.6,1",
+        ),
+        (
+            "inclusion,subject,condition,stimulus,correct",
+            "2.6,1,a,6.6,1",
+        ),
+    ] {
+        assert_eq!(read(header, row), one);
+    }
+    assert!(one.is_ok());
+}
+
 // Verifies: PSY-021.
 #[test]
 fn a_row_for_each_trial_is_counted() {
@@ -130,6 +170,7 @@ fn a_row_for_each_trial_is_counted() {
             .to_string();
         assert!(error.starts_with(expected), "{error}");
     }
+    assert_columns_are_told_apart();
     let many = "1,a,2.6,1\n".repeat(1001);
     let error = AnswerTable::from_csv(&format!("{head}{many}"), "t.csv").unwrap_err();
     assert!(

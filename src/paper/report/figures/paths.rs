@@ -68,8 +68,9 @@ fn gammas(run: &Run, map: &ForceMap, found: &Findings) -> Option<Gammas> {
         let (positions, depths): (Vec<_>, Vec<_>) = places.map(place).unzip();
         let sweep = Record::planned(&positions, &depths).ok()?;
         for (unknown, gamma) in UNKNOWN.iter().zip(row) {
-            let with = [map.table()];
-            let found = gammas_along((&sweep, depth), unknown, noise_sd, without, with);
+            // All maps of a run have the same depths.
+            let over = (without, [map.table()]);
+            let found = gammas_along((&sweep, depth), unknown, noise_sd, without, over);
             *gamma = *found.ok()?.first()?;
         }
     }

@@ -130,8 +130,12 @@ impl Page<'_> {
 
     /// The band of the force without inclusion at x = 0; only for the paper's reference.
     fn level(&self, study: &StudyResults) -> Option<Band> {
-        let name = paper::name_of(&study.plan.reference)?;
-        study.of(name, &Kind::NormalForceN { lateral_m: 0.0 })?.band
+        let reference = &study.plan.reference;
+        if paper::name_of(reference) != Some("none") {
+            return None;
+        }
+        let force = Kind::NormalForceN { lateral_m: 0.0 };
+        study.of(reference.name(), &force)?.band
     }
 
     /// Whether the gel of the reference is at finite strain.

@@ -6,7 +6,7 @@ use super::run::*;
 use crate::report::inputs::{Survival, survival};
 use crate::report::{Run, findings};
 use crate::study::tests::{near, plan, results};
-use crate::study::{Kind, StudyPlan, StudyResults};
+use crate::study::{Kind, QuantityResult, StudyPlan, StudyResults};
 use palpate::phantom::{BUILTIN_NAMES, Phantom};
 use palpate_asserts::assert_has;
 
@@ -88,6 +88,38 @@ fn a_study_stands_beside_the_numbers_of_the_run() {
     // Of the two inputs the modulus counts more in the force: 0.9 against 0.3 per cent per per cent.
     let drawn = "none: normal force at 0.0 mm, N: gel: <modulus> 3.6 %, gel: height −1.";
     assert_has(&made.figure("inputs").alt, drawn);
+}
+
+/// The run of [`with_study`] with another reference, and without the map of this name.
+fn with_reference(reference: Phantom) -> Run {
+    let mut run = with_study();
+    let name = reference.name();
+    let is_other = |phantom: &Phantom| phantom.name() != name;
+    run.maps.retain(|map| map.phantom().is_none_or(is_other));
+    let study = run.study.as_mut().unwrap();
+    study.plan.phantoms.retain(is_other);
+    study.quantities.retain(|of| of.quantity.phantom != name);
+    let of_reference = |of: &&mut QuantityResult| of.quantity.phantom == "none";
+    for of in study.quantities.iter_mut().filter(of_reference) {
+        of.quantity.phantom = name.into();
+    }
+    study.plan.reference = reference.clone();
+    run.reference = map(Some(reference), &DEPTHS, |_| 0.0, |_| 0.0);
+    run
+}
+
+// Verifies: REP-083, REP-010.
+#[test]
+fn the_force_level_is_that_of_a_gel_without_inclusion_by_any_name() {
+    let none = Phantom::builtin("none").unwrap();
+    let renamed = none.changed(|parts| parts.name = "my gel".into());
+    let deeper = Phantom::builtin("4.6");
+    for (reference, is_there) in [(renamed, true), (deeper, false)] {
+        let run = with_reference(reference.unwrap());
+        let page = made(&run).page;
+        let sentence = "Without an inclusion the normal force at x = 0 is between";
+        assert_eq!(page.contains(sentence), is_there);
+    }
 }
 
 // Verifies: REP-081.
