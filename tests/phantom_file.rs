@@ -24,7 +24,7 @@ fn told(text: &str, good: &str) -> String {
     read(text).map_or_else(|message| message, |_| good.into())
 }
 
-// Verifies: PHA-019, PHA-021, PHA-031, PHA-032.
+// Verifies: PHA-019, PHA-021, PHA-026, PHA-031, PHA-032, PHA-033.
 #[test]
 fn finite_strain_friction_and_fibres_are_read() {
     let gel = "thickness_mm = 15.0\n";
@@ -66,6 +66,11 @@ fn finite_strain_friction_and_fibres_are_read() {
     );
     let rough = off(&|parts| parts.probe.friction = 0.1);
     assert!(rough.contains("no friction"), "{rough}");
+    let fibres = "fibre_modulus_kpa = 20.0\n";
+    let oblique = format!("{fibres}fibre_angle_deg = 30.0\n");
+    let lopsided = read(&ball.to_toml().replace(fibres, &oblique)).unwrap_err();
+    let expected = "gel.toml:3: geometry = \"axisymmetric\", but must be \"plane\" where the phantom is not its own mirror image: ";
+    assert!(lopsided.starts_with(expected), "{lopsided}");
     assert!(ball.check_pose(1e-3, 0.0).is_ok() && ball.check_pose(1e-3, 1e-3).is_err());
     let upright = phantom.changed(|parts| parts.layers[1].material.fibre_angle_deg = 90.0);
     assert!(upright.unwrap().is_symmetric());

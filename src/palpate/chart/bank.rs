@@ -2,6 +2,7 @@
 
 use plotters::style::RGBColor;
 
+use super::lines::with_room;
 use super::panel::{Cells, Line, Panel, PanelKind};
 use super::style::{INK, VERMILION};
 use super::{CHORDS, chart, round_range, to_mm};
@@ -174,10 +175,10 @@ fn gel(bank: &Bank, place: &PlacePosterior) -> Panel {
     let outline = to_mm(corners.map(|[x, y]| [*x, -y]));
     let laterals = bank.reference().table().laterals().iter().map(|x| 1e3 * x);
     let across = extremes(laterals.chain(outline.iter().map(|corner| corner.0)));
-    let x = across.unwrap_or([-1.0, 1.0]);
     let depths = bank.axes()[1].iter().map(|depth| 1e3 * depth);
     let down = extremes(depths.chain(outline.iter().map(|corner| corner.1)));
     let deepest = 1.05 * down.map_or(1.0, |ends| ends[1]);
+    let (x, deepest, height) = with_room(across.unwrap_or([-1.0, 1.0]), deepest, 120.0);
     let estimate = (1e3 * place.estimate[0], 1e3 * place.estimate[1]);
     let dot = Line::new(VERMILION, vec![estimate]).wide(0.0).dotted(3);
     let outline = Line::new(VERMILION, outline).dashed(true);
@@ -200,7 +201,7 @@ fn gel(bank: &Bank, place: &PlacePosterior) -> Panel {
         ..Panel::new(
             "Depth below the surface (mm)",
             [x, [deepest, 0.0]],
-            ((438.0 / (x[1] - x[0]) * deepest) as i32).clamp(120, 600),
+            height,
             vec![outline, dot],
         )
     }
@@ -274,10 +275,12 @@ fn region(cells: &[Rectangle], level: f64) -> Vec<Vec<(f64, f64)>> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::panel::{LEFT, RIGHT};
+    use super::super::style::WIDTH;
     use super::*;
     use crate::bank::{BankDetector, BankPlan};
     use crate::detect::nuisance::NoiseLevel;
-    use crate::phantom::Phantom;
+    use crate::phantom::{Phantom, PhantomParts};
 
     // Verifies: CLI-163.
     #[test]
@@ -327,12 +330,10 @@ mod tests {
         }
     }
 
-    // Verifies: CLI-163.
-    #[test]
-    fn the_gel_is_drawn_from_its_surface_down_and_its_key_has_the_colours_of_the_regions() {
-        let phantom = Phantom::builtin("4.6").unwrap();
-        let mut plan = BankPlan::new(phantom, 3e-3, &[-1e-3, 1e-3]).unwrap();
-        (plan.positions, plan.depths) = (vec![-1e-3, 1e-3], vec![2.6e-3, 4.6e-3]);
+    /// A bank over a sweep from −`side` to `side`, m, with two positions and two depths, m, and where a record finds its inclusion.
+    fn placed(phantom: Phantom, side: f64, depths: [f64; 2]) -> (Bank, PlacePosterior) {
+        let mut plan = BankPlan::new(phantom, 3e-3, &[-side, side]).unwrap();
+        (plan.positions, plan.depths) = (vec![-1e-3, 1e-3], depths.into());
         plan.mesh_size = 4e-3;
         let bank = plan.bank().unwrap();
         // Of four places, each with a sample of its own, the record shows the first.
@@ -347,7 +348,41 @@ mod tests {
         );
         let detector = detector.unwrap();
         let found = detector.statistic(&mut [9.0, 0.0, 0.0, 0.0]).unwrap();
-        let panel = gel(&bank, &detector.place(&found));
+        let place = detector.place(&found);
+        (bank, place)
+    }
+
+    // Verifies: CLI-163.
+    #[test]
+    fn the_gel_is_to_scale_however_narrow_or_wide_the_bank_is() {
+        let small = |parts: &mut PhantomParts| {
+            parts.inclusions[0].shape = Shape::Disc { diameter: 1e-3 };
+        };
+        let disc = Phantom::builtin("4.6").unwrap();
+        let small = disc.changed(small).unwrap();
+        for (phantom, side, depths) in [
+            (&disc, 1e-3, [2.6e-3, 8.6e-3]),
+            (&disc, 8e-3, [2.6e-3, 4.6e-3]),
+            (&small, 11e-3, [0.7e-3, 1e-3]),
+        ] {
+            let (bank, place) = placed(phantom.clone(), side, depths);
+            let panel = gel(&bank, &place);
+            let ([left, right], [deepest, surface]) = (panel.x, panel.y);
+            let across = f64::from(WIDTH - LEFT - RIGHT) / (right - left);
+            let off = f64::from(panel.height) - across * (deepest - surface);
+            assert!(off.abs() < 1.0, "{side}: {off} pixels");
+            assert!((120..=601).contains(&panel.height), "{}", panel.height);
+            assert!(left <= -1e3 * side && right >= 1e3 * side, "{side}");
+            assert!(deepest >= 1e3 * depths[1] && surface == 0.0, "{side}");
+        }
+    }
+
+    // Verifies: CLI-163.
+    #[test]
+    fn the_gel_is_drawn_from_its_surface_down_and_its_key_has_the_colours_of_the_regions() {
+        let phantom = Phantom::builtin("4.6").unwrap();
+        let (bank, place) = placed(phantom, 1e-3, [2.6e-3, 4.6e-3]);
+        let panel = gel(&bank, &place);
         assert!(panel.y[0] > 4.6 && panel.y[1] == 0.0, "{:?}", panel.y);
         let colour = |name: &str| {
             let mut lines = panel.key.iter();

@@ -22,6 +22,19 @@ const NUMBERS: i32 = 28;
 /// Pixels at the bottom of the figure for the name of the x axis.
 const FOOTING: i32 = 34;
 
+/// The least and greatest x, the extent of y and the pixels down of a drawing with equal scales on both axes that holds `x` and
+/// `high`: what would be higher than 600 pixels gets more room beside it, and what would be lower than `least` more above or below.
+pub fn with_room(x: [f64; 2], high: f64, least: f64) -> ([f64; 2], f64, i32) {
+    let (width, wide) = (f64::from(WIDTH - LEFT - RIGHT), x[1] - x[0]);
+    let high = high.max(least / width * wide);
+    let aside = 0.5 * (width / 600.0 * high - wide).max(0.0);
+    let x = [x[0] - aside, x[1] + aside];
+    let scale = width / (x[1] - x[0]);
+    let height = (scale * high).ceil();
+    // Whole pixels hold a little more than was asked for.
+    (x, height / scale, height as i32)
+}
+
 impl Panel {
     /// A drawing with equal scales on both axes that holds all of its areas and has some room above them. What is very
     /// flat or very tall gets more room around it.
@@ -29,24 +42,17 @@ impl Panel {
         let areas = lines.iter().filter(|line| line.is_area);
         let in_cells = cells.iter().flat_map(|of| of.areas.iter().flatten());
         let corners = in_cells.chain(areas.flat_map(|line| &line.points));
-        let mut x = extremes(corners.clone().map(|corner| corner.0)).unwrap_or([-1.0, 1.0]);
+        let x = extremes(corners.clone().map(|corner| corner.0)).unwrap_or([-1.0, 1.0]);
         let mut y = extremes(corners.map(|corner| corner.1)).unwrap_or([-1.0, 1.0]);
         y[1] += 0.02 * (y[1] - y[0]);
-        let width = f64::from(WIDTH - LEFT - RIGHT);
-        let lack = |wanted: f64, [from, to]: [f64; 2]| (wanted - (to - from)).max(0.0);
-        y[1] += lack(60.0 / width * (x[1] - x[0]), y);
-        let aside = 0.5 * lack(width / 600.0 * (y[1] - y[0]), x);
-        x = [x[0] - aside, x[1] + aside];
-        let scale = width / (x[1] - x[0]);
-        let height = (scale * (y[1] - y[0])).ceil();
-        // Whole pixels hold a little more than was asked for.
-        y[1] = y[0] + height / scale;
+        let (x, high, height) = with_room(x, y[1] - y[0], 60.0);
+        y[1] = y[0] + high;
         Panel {
             heading: "Height y (mm)".into(),
             x,
             y,
             kind: PanelKind::ToScale,
-            height: height as i32,
+            height,
             cells,
             lines,
             ..Panel::default()

@@ -86,8 +86,11 @@ pub struct Layout {
 struct Stated {
     /// As in [`key`].
     quantity: String,
+    /// All that is stated but the sign: a name, if the header has it.
+    whole: String,
     /// The name in the header, or the number from 1.
     name: String,
+    sign: f64,
     factor: f64,
     unit: Option<String>,
 }
@@ -173,16 +176,16 @@ impl Stated {
         let (quantity, name) = text.split_once('=').ok_or_else(wrong)?;
         let unquoted = |name: &str| name.trim().trim_matches('"').trim().to_owned();
         let (quantity, name) = (quantity.trim(), &*unquoted(name));
-        let (name, unit) = match name
+        let (whole, sign) = match name.strip_prefix('-') {
+            Some(name) => (name, -1.0),
+            None => (name, 1.0),
+        };
+        let (name, unit) = match whole
             .strip_suffix(']')
             .and_then(|name| name.rsplit_once('['))
         {
             Some((name, unit)) => (name.trim(), Some(unit.trim().to_lowercase())),
-            None => (name, None),
-        };
-        let (name, sign) = match name.strip_prefix('-') {
-            Some(name) => (name, -1.0),
-            None => (name, 1.0),
+            None => (whole, None),
         };
         let factor = name.rsplit_once('*').and_then(|(name, factor)| {
             let factor = parse_scaled(factor.trim(), 0)?;
@@ -196,8 +199,10 @@ impl Stated {
         }
         Ok(Stated {
             quantity: quantity.into(),
+            whole: unquoted(whole),
             name,
-            factor: sign * factor,
+            sign,
+            factor,
             unit,
         })
     }
@@ -355,9 +360,12 @@ fn read(field: &str, names: &[Named], by: By) -> Option<Named> {
 impl Stated {
     /// The column that was stated.
     fn find(&self, header: &[&str], names: &[Named]) -> Result<Found, String> {
-        let by_name = header
-            .iter()
-            .position(|field| field.eq_ignore_ascii_case(&self.name));
+        let place_of = |name: &str| {
+            let mut fields = header.iter();
+            fields.position(|field| field.eq_ignore_ascii_case(name))
+        };
+        let by_whole = place_of(&self.whole);
+        let by_name = by_whole.or(place_of(&self.name));
         let number = self
             .name
             .parse()
@@ -378,7 +386,7 @@ impl Stated {
             place,
             name,
             power,
-            factor: self.factor,
+            factor: self.sign * by_whole.map_or(self.factor, |_| 1.0),
             by: named.map_or(By::Unitless, |_| By::Name),
         })
     }
@@ -424,6 +432,17 @@ mod tests {
         // A name that is a number is a name first.
         let layout = "position=1[mm],normal=2[N]";
         assert_eq!(read("2,1\n3,4\n", layout), Ok([4e-3, 3.0]));
+        // A name may end in a unit in square brackets, as the user's column may.
+        let text = "pos (mm),t,Raw [mN]\n1,0.25,-2\n";
+        for (layout, force) in [
+            ("normal=Raw [mN]", -2e-3),
+            ("normal=-raw [mN]", 2e-3),
+            ("normal=-\"Raw [mN]\"", 2e-3),
+            ("normal=-Raw [mN]*0.5[N]", 1.0),
+        ] {
+            let layout = format!("{layout},position=1");
+            assert_eq!(read(text, &layout), Ok([1e-3, force]), "{layout}");
+        }
         // Without a word the position counts, and of the forces the one with a name.
         assert_eq!(
             Rows::parse(TEXT, COLUMNS, "").unwrap().rows[0].1,

@@ -18,7 +18,8 @@ use super::cholesky::reflect;
 use super::mesh::Mesh;
 use super::{FemError, Pose};
 use crate::force::Force;
-use crate::phantom::Probe;
+use crate::phantom::{Probe, Strain};
+use crate::refusal::Refusal;
 pub use state::ContactState;
 
 /// How the gap between a surface node and the probe is measured.
@@ -42,6 +43,19 @@ impl Contact {
             Contact::DeformedNormal => "deformed-normal",
             Contact::VerticalGap => "vertical-gap",
         }
+    }
+
+    /// Whether the forces of a gel at this strain can be computed with this law.
+    ///
+    /// # Errors
+    /// `vertical-gap` at finite strain.
+    ///
+    /// Implements: FIN-009.
+    pub fn check(self, strain: Strain) -> Result<(), Refusal> {
+        let found = format!("{} contact at finite strain", self.name());
+        let expected = "give deformed-normal contact, or strain = \"small\"";
+        let is_refused = strain == Strain::Finite && self != Contact::DeformedNormal;
+        Refusal::state(found, expected).when(is_refused)
     }
 }
 

@@ -8,7 +8,7 @@ use super::size::SizeField;
 use super::triangle::Point;
 use super::triangulate::Triangulation;
 use crate::decimal::mm;
-use crate::phantom::{Material, Outline, Phantom, Support};
+use crate::phantom::{Geometry, Material, Outline, Phantom, Support};
 use crate::refusal::Refusal;
 
 /// What an element is made of: an entry of the phantom's list.
@@ -49,6 +49,21 @@ pub struct Mesh {
     pub symmetric: bool,
 }
 
+/// What to do about a half that cannot be meshed: the angle is twice the smallest of a triangle.
+const HALF: &str = "give a polygon's corner on the axis more than 50°, or try another mesh size";
+
+/// The refusal of a half, where the whole would have elements across the axis.
+fn of_half(error: FemError) -> FemError {
+    match error {
+        FemError::Refused(refusal) => Refusal {
+            remedy: HALF.into(),
+            ..*refusal
+        }
+        .into(),
+        other => other,
+    }
+}
+
 /// Most nodes that a mesh may have: its factor fills some 3 GB.
 const MOST_NODES: f64 = 500_000.0;
 
@@ -58,15 +73,17 @@ impl Mesh {
     ///
     /// # Errors
     /// [`FemError::Refused`] if the size is not positive and finite, if the mesh would have more than 500 000 nodes, and if a
-    /// triangle comes out too flat.
+    /// triangle comes out too flat, of an axisymmetric phantom in its right half.
     ///
     /// Implements: FEM-017.
     pub fn new(phantom: &Phantom, size: f64) -> Result<Mesh, FemError> {
         let (field, _) = Mesh::forecast(phantom, size)?;
         let mut symmetric = phantom.is_symmetric();
         let mut triangles = Triangulation::new(phantom, &field, symmetric);
-        if symmetric && triangles.is_err() {
-            // The axis may halve the corner of a polygon, which is then too sharp.
+        // The axis may halve the corner of a polygon, which is then too sharp.
+        if phantom.geometry() == Geometry::Axisymmetric {
+            triangles = triangles.map_err(of_half);
+        } else if symmetric && triangles.is_err() {
             symmetric = false;
             triangles = Triangulation::new(phantom, &field, symmetric);
         }

@@ -49,6 +49,9 @@ pub use size::MESH_SIZE;
 /// Implements: REP-015.
 pub const SMALL_STRAIN_LIMIT: f64 = 0.2;
 
+/// Young's modulus over that of another material from which on a body is as good as rigid, while rounding leaves small residuals.
+const STIFFEST: f64 = 5e3;
+
 /// Which class of processors has the same bits of every force as this one.
 ///
 /// Implements: CON-008, CON-010.
@@ -79,9 +82,9 @@ pub enum FemError {
     Refused(Box<Refusal>),
     /// The probe cannot stand there, or the mesh is too coarse for its contact.
     Pose(Box<Refusal>),
-    /// A linear solve left too much.
+    /// A solution leaves forces out of balance.
     Residual {
-        /// ‖f − K u‖ / ‖f‖.
+        /// ‖f − K u‖ / ‖f‖, or at finite strain the largest force out of balance over those of the contact.
         residual: f64,
     },
     /// Contact did not converge.
@@ -102,10 +105,10 @@ impl fmt::Display for FemError {
         match self {
             FemError::Refused(refusal) | FemError::Pose(refusal) => refusal.fmt(f),
             FemError::Residual { residual } => {
-                let limit = cholesky::RESIDUAL_LIMIT;
+                let (limit, stiffest) = (cholesky::RESIDUAL_LIMIT, STIFFEST);
                 write!(
                     f,
-                    "a linear solve left the relative residual {residual:e}, more than {limit:e}"
+                    "forces are out of balance by {residual:.2e} of the load, more than {limit:e}; if a material is more than {stiffest} times as stiff as another, make it {stiffest} times as stiff, which changes the force by less than 0.1 %; else try a greater depth or another mesh size"
                 )
             }
             FemError::NoConvergence { pose, iterations } => {

@@ -126,10 +126,7 @@ impl Model {
         let finite = match phantom.strain() {
             Strain::Small => None,
             Strain::Finite => {
-                let found = format!("{} contact at finite strain", contact.name());
-                let expected = "give deformed-normal contact, or strain = \"small\"";
-                let refusal = Refusal::state(found, expected);
-                refusal.when(contact != Contact::DeformedNormal)?;
+                contact.check(Strain::Finite)?;
                 let friction = Friction::steady(phantom.probe().friction);
                 Some(FiniteModel::new(phantom, &mesh, friction)?)
             }

@@ -219,7 +219,7 @@ fn a_map_fits_its_phantom() {
     let text = text.replacen("\"youngs_modulus_pa\"", oblique, 1);
     assert_error(
         ForceMap::from_json(&text, "map.json"),
-        "map.json: phantom: an axisymmetric phantom that is not its own mirror image; [..]",
+        "map.json: phantom: geometry = \"axisymmetric\", but must be \"plane\" where [..]",
     );
 }
 

@@ -100,9 +100,9 @@ impl Phantom {
                 " (the axis of an axisymmetric phantom)",
             )?;
         }
-        let found = "an axisymmetric phantom that is not its own mirror image";
-        let expected = "give inclusions that are, fibres along x or y, and no friction";
-        Refusal::state(found, expected).when(!self.is_symmetric())
+        let found = "\"axisymmetric\"";
+        let expected = "\"plane\" where the phantom is not its own mirror image: give inclusions that are, fibres along x or y, and no friction";
+        Refusal::value("geometry", found, expected).when(!self.is_symmetric())
     }
 
     fn check_supports(&self) -> Check {

@@ -19,6 +19,7 @@ use nalgebra::Vector2;
 
 use self::contact::Patch;
 use self::system::{Equations, System};
+use super::cholesky::RESIDUAL_LIMIT;
 use super::field::FieldCheck;
 use super::mesh::Mesh;
 use super::{FemError, Pose};
@@ -261,6 +262,8 @@ impl FiniteModel {
     }
 
     /// Newton's iterations at one pose, from `state`. The number of iterations where they lead nowhere.
+    ///
+    /// Implements: FIN-007.
     fn solve(
         &self,
         from: &Equilibrium,
@@ -272,7 +275,11 @@ impl FiniteModel {
         };
         for iteration in 0..MOST_ITERATIONS {
             let (out, contact) = self.out_of_balance(&trial.equations, &trial.forces);
-            if iteration > 0 && out <= BALANCE[0] * contact + BALANCE[1] {
+            let is_balanced = out <= BALANCE[0] * contact + BALANCE[1];
+            // 1e-11 N is much of a light contact; of the lightest, so is rounding.
+            let is_last = iteration + 1 == MOST_ITERATIONS;
+            let is_exact = is_last || relative(out, contact) <= RESIDUAL_LIMIT;
+            if iteration > 0 && is_balanced && is_exact {
                 return Ok(self.accept(pose, trial, iteration).ok_or(iteration));
             }
             match self.iterate(trial, pose)? {
@@ -450,7 +457,7 @@ impl FiniteModel {
             energy: equations.energy,
             penetration,
             check: FieldCheck {
-                residual: out / contact.max(f64::MIN_POSITIVE),
+                residual: relative(out, contact),
                 imbalance: (x - force.lateral).abs().max((y - force.normal).abs()),
                 min_det: equations.least_det,
             },
@@ -461,6 +468,11 @@ impl FiniteModel {
             state,
         })
     }
+}
+
+/// The force out of balance over that of the contact; absolute, N, where there is none.
+fn relative(out: f64, contact: f64) -> f64 {
+    if contact > 0.0 { out / contact } else { out }
 }
 
 /// How far one pose is from another along x or down, m.

@@ -283,6 +283,34 @@ fn the_certificate_tells_the_checks_of_every_pose() {
     assert_near(least, certificate.min_det.row(2)[0], 1e-9);
 }
 
+// Verifies: FEM-008.
+#[test]
+fn a_material_much_stiffer_than_another_is_refused_with_a_remedy_that_hardly_changes_the_force() {
+    let model = |times: f64| {
+        let phantom = builtin("2.6").changed(|parts| {
+            let softest = parts.layers[1].material.youngs_modulus;
+            parts.inclusions[0].material.youngs_modulus = times * softest;
+        });
+        super::coarse(&phantom.unwrap(), Contact::DeformedNormal)
+    };
+    // Rounding of a nearly rigid body leaves a residual in proportion to its modulus, but hardly changes the force.
+    let [asked, advised] = [1e6, 5e3].map(model);
+    let map = |model: &Model| model.map(&MILLIMETRES, &[0.0, 4e-3], &|_| ());
+    let said = map(&asked).unwrap_err().to_string();
+    let remedy = "if a material is more than 5000 times as stiff as another, make it 5000 times as stiff, which changes the force by less than 0.1 %";
+    assert!(said.contains(remedy), "{said}");
+    let residual = map(&advised).unwrap();
+    let residual = residual.certificate().unwrap().worst_relative_residual;
+    assert!(residual <= 5e-9, "{residual:e}");
+    for lateral in [0.0, 4e-3] {
+        for depth in MILLIMETRES {
+            let force = |model: &Model| model.solve(pose(depth, lateral)).unwrap().force.normal;
+            let change = force(&advised) / force(&asked) - 1.0;
+            assert!(change.abs() < 5e-4, "{depth} {lateral}: {change:e}");
+        }
+    }
+}
+
 // Verifies: FEM-038.
 #[test]
 fn axes_that_make_no_map_are_refused_before_anything_is_solved() {

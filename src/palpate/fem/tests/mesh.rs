@@ -6,7 +6,7 @@ use crate::fem::MESH_SIZE;
 use crate::fem::mesh::Mesh;
 use crate::fem::size::SizeField;
 use crate::fem::triangulate::Triangulation;
-use crate::phantom::{Outline, Phantom, Support};
+use crate::phantom::{Geometry, Outline, Phantom, Support};
 use palpate_asserts::{assert_cases, row};
 
 use super::supports::{SUPPORTS, held_by};
@@ -177,20 +177,53 @@ fn a_phantom_that_no_sound_triangle_follows_is_refused_with_the_place() {
     let size = SizeField::new(&phantom, MESH_SIZE);
     let error = Triangulation::new(&phantom, &size, true).err().unwrap();
     // Within half a millimetre of the corner at (0, −3) mm.
-    let said = error.to_string();
+    assert_names_corner(&error.to_string(), [0.0, -3.0]);
+    // Meshed as a whole, it has none so sharp.
+    let mesh = Mesh::new(&phantom, MESH_SIZE).unwrap();
+    assert!(phantom.is_symmetric() && !mesh.symmetric);
+    assert!(check_angles(&mesh) >= 25.0);
+}
+
+/// That a refusal names a triangle which is too flat, within half a millimetre of a corner, mm.
+fn assert_names_corner(said: &str, corner: [f64; 2]) {
     let number = |before: &str| -> f64 {
         let (_, after) = said.split_once(before).expect("a number");
         let end = after.find([' ', '°']).expect("a unit");
         after[..end].parse().expect("a number")
     };
     let at = [number("near x = "), number(", y = ")];
-    assert!(distance(at, [0.0, -3.0]) < 0.5, "{said}");
+    assert!(distance(at, corner) < 0.5, "{said}");
     let holds = number("an angle of ") < 25.0 && said.contains("under 25°");
     assert!(holds, "{said}");
-    // Meshed as a whole, it has none so sharp.
-    let mesh = Mesh::new(&phantom, MESH_SIZE).unwrap();
-    assert!(phantom.is_symmetric() && !mesh.symmetric);
-    assert!(check_angles(&mesh) >= 25.0);
+}
+
+// Verifies: FEM-017, FEM-081.
+#[test]
+fn no_element_lies_across_the_axis_of_an_axisymmetric_phantom() {
+    // A cone whose tip has 41°, of which the axis leaves 20.6°.
+    let cone = |radius: f64| {
+        let points = [[-radius, 0.0], [0.0, -8.0], [radius, 0.0]];
+        with(vec![hard(0.0, 3.0, polygon(&points))])
+    };
+    let turned = |plane: Phantom| {
+        let turned = plane.changed(|parts| {
+            parts.geometry = Geometry::Axisymmetric;
+            parts.probe.length = 2.0 * parts.probe.radius;
+        });
+        turned.unwrap()
+    };
+    let [sharp, blunt] = [3.0, 4.0].map(|radius| turned(cone(radius)));
+    for size in [0.5e-3, 1e-3, 2e-3] {
+        let said = Mesh::new(&sharp, size).unwrap_err().to_string();
+        assert_names_corner(&said, [0.0, -11.0]);
+        let remedy =
+            "; give a polygon's corner on the axis more than 50°, or try another mesh size";
+        assert!(said.ends_with(remedy), "{said}");
+        // One of 53°.
+        let mesh = Mesh::new(&blunt, size).unwrap();
+        check_mirror(&blunt, &mesh);
+    }
+    assert!(!Mesh::new(&cone(3.0), 1e-3).unwrap().symmetric);
 }
 
 // Verifies: FEM-013.

@@ -141,6 +141,18 @@ fn iterations_of_all_steps_are_counted() {
     );
 }
 
+// Verifies: FIN-008, FEM-008.
+#[test]
+fn where_the_probe_has_left_the_gel_the_residual_is_a_force() {
+    let model = Model::new(&builtin("none"), 1e-3, Contact::default()).unwrap();
+    let poses = [0.3, 0.6, 0.3, 0.0].map(|depth| pose(depth, 0.0));
+    let (path, checks) = model.path(&poses).unwrap();
+    assert_eq!(path[3].force.normal, 0.0);
+    assert!(path[2].force.normal > 0.01);
+    // Rounding, N.
+    assert!(checks[3].residual <= 1e-11, "{checks:?}");
+}
+
 // Verifies: FEM-016, FIN-001.
 #[test]
 fn the_stress_under_the_probe_is_its_pressure() {

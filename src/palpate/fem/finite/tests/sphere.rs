@@ -3,7 +3,7 @@
 use nalgebra::{SVector, Vector2};
 
 use super::super::law::{Law, UNKNOWNS, points};
-use super::{pose, sphere};
+use super::{finite, pose, sphere};
 use crate::fem::element::{NODES, StiffnessRule};
 use crate::fem::{Contact, Mesh, Model};
 use crate::phantom::{Material, Strain};
@@ -114,6 +114,27 @@ fn a_sphere_on_a_layer_has_the_force_of_theory() {
         (small - finite).abs() < 0.005 && small < vertical - 0.01,
         "{small} {finite}"
     );
+}
+
+// Verifies: FIN-007, FEM-008.
+#[test]
+fn a_light_touch_is_as_balanced_as_a_firm_one() {
+    let gel = sphere(3e-3, 15e-3).changed(|parts| parts.well.width = 40e-3);
+    let model = Model::new(&finite(&gel.unwrap()), 2e-3, Contact::default()).unwrap();
+    // Down to micronewtons, as `palpate calibrate` asks.
+    let depths = [5e-6, 1e-5, 2e-5, 5e-5];
+    let map = model.map(&depths, &[0.0], &|_| ()).unwrap();
+    let certificate = map.certificate().unwrap();
+    let worst = certificate.worst_relative_residual;
+    assert!(worst <= 1e-8, "{worst:e}");
+    // At 0 there is no load.
+    assert!(model.map(&[0.0, 1e-6], &[0.0], &|_| ()).is_ok());
+    // However light a touch is, the iterations end.
+    for depth in [1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-7] {
+        let solution = model.solve(pose(1e3 * depth, 0.0)).unwrap();
+        let check = model.checks(&[solution]).unwrap()[0];
+        assert!(check.residual < 1e-3, "{depth:e}: {check:?}");
+    }
 }
 
 // Verifies: FEM-081, FEM-013.
