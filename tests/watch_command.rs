@@ -126,6 +126,28 @@ fn the_last_answer_is_that_of_detect() {
     }
 }
 
+// Verifies: SEQ-021, SEQ-023, CLI-184.
+#[test]
+fn a_sensor_set_to_zero_tells_an_inclusion_but_never_that_there_is_none() {
+    let line = format!("{WATCH} --zeroed");
+    let (answers, code, error) = watched(&line, &sweep("sweep-without"));
+    let last = &answers[answers.len() - 1];
+    assert_eq!((code, &last["decision"]), (3, &Value::Null), "{last}");
+    assert_eq!(last["causes"], json!(["zeroed"]));
+    assert_eq!(
+        (&last["covered"], &last["excluded"]),
+        (&json!(10), &json!(0))
+    );
+    assert_has(
+        &error,
+        "palpate: -: cannot be judged: a sensor that was set to zero on the gel",
+    );
+    let (answers, code, error) = watched(&line, &sweep("sweep-with"));
+    let last = &answers[answers.len() - 1];
+    assert_eq!((code, &*error), (0, ""));
+    assert_eq!(last["decision"], "inclusion");
+}
+
 // Verifies: CLI-182, SEQ-024.
 #[test]
 fn csv_and_json_say_the_same_and_gaps_are_counted() {

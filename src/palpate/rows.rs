@@ -25,6 +25,13 @@ struct Row {
     line: Option<[String; 2]>,
 }
 
+/// Whether a record was compared with both hypotheses, so that it has a posterior.
+///
+/// Implements: CLI-143.
+fn is_compared(decision: Option<Decision>, causes: &[Cause]) -> bool {
+    decision.is_some() || matches!(causes, [Cause::TooWeak | Cause::Zeroed])
+}
+
 /// Quantities in the order in which they are printed. Serialised, they are an object.
 ///
 /// ```
@@ -176,7 +183,7 @@ impl RobustAnswer {
         rows.value("model", "robust");
         rows.decision(self.decision, &self.causes);
         let is_weak = self.causes == [Cause::TooWeak];
-        let is_compared = self.decision.is_some() || is_weak || self.causes == [Cause::Zeroed];
+        let is_compared = is_compared(self.decision, &self.causes);
         numbers! { rows;
             posterior_h1: "posterior P(inclusion)", is_compared.then_some(self.posterior);
             theta: "theta (log-likelihood ratio)", is_compared.then_some(self.theta);
@@ -279,7 +286,8 @@ impl Judgement {
         };
         rows.shown("t_threshold", "T threshold", least, text);
         rows.number("theta", "theta (log-likelihood ratio)", self.test.theta());
-        let posterior = self.decision.map(|_| self.posterior);
+        let is_compared = is_compared(self.decision, &self.causes);
+        let posterior = is_compared.then_some(self.posterior);
         rows.test(&self.test, self.gamma_nominal, posterior);
         numbers! { rows;
             false_alarm: "P(false alarm) at most", self.rates.false_alarm;
@@ -316,7 +324,8 @@ impl Location {
             rows.shown(key, label, json!(rate), text);
             rows.value("simulations", calibrated.simulations);
         }
-        let posterior = self.decision.map(|_| self.posterior);
+        let is_compared = is_compared(self.decision, &self.causes);
+        let posterior = is_compared.then_some(self.posterior);
         rows.test(&self.test, self.gamma_nominal, posterior);
         numbers! { rows;
             false_alarm_bound: "P(false alarm) at most", self.threshold.false_alarm_bound;

@@ -92,6 +92,24 @@ fn a_record_of_several_passes_and_depths_is_judged_by_its_poses() {
     assert_has(&lines, "without.csv,no_inclusion,");
 }
 
+// Verifies: CLI-175, ROB-080.
+#[test]
+fn a_record_of_a_folder_is_judged_as_if_the_others_were_not_there() {
+    // Passes at 2.05 and 2.35 mm, beside others down to 2.95 mm.
+    let deeper = deep().read("with.csv");
+    let shallow: Vec<_> = deeper.lines().take(1 + 2 * 81).collect();
+    std::fs::create_dir_all(deep().at("depths")).unwrap();
+    deep().write("depths/a.csv", shallow.join("\n"));
+    deep().write("depths/b.csv", &deeper);
+    let output = deep().run(&format!("detect depths {MAPS} {SD} --format json"));
+    let lines = text(&output.stdout).lines();
+    let lines: Vec<Value> = lines
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect();
+    let alone = ["a", "b"].map(|file| answer(&format!("depths/{file}.csv {MAPS} {SD}")));
+    assert_eq!(lines, alone);
+}
+
 // Verifies: CLI-200, CLI-201.
 #[test]
 fn each_sample_has_one_depth() {

@@ -38,7 +38,7 @@ macro_rules! parameter {
     (positions_mm) => { parameter!(positions_mm: "array_like, shape (n,)" = "Lateral positions of the samples, mm.") };
     (forces_n) => { parameter!(forces_n: "array_like, shape (2, n) or (n,)" = "Lateral and normal forces, or normal ones alone, N.") };
     (own_noise_sd_n) => { parameter!(noise_sd_n: "float or (float, float), optional" = "As of theta, N; by default the record tells it.") };
-    (zeroed) => { parameter!(zeroed: "bool, optional" = "Whether the sensor was set to zero on the gel.") };
+    (zeroed) => { parameter!(zeroed: "bool, optional" = "Whether the sensor was set to zero on the gel, so that \"no inclusion\" is never the answer.") };
     (own_depths_mm) => { parameter!(depths_mm: "array_like, shape (n,), optional" = "Depth of each sample, in the order of time, mm, for a bank of several depths.") };
     (theta) => { parameter!(theta: "float or array_like" = "The log-likelihood ratio.") };
     (eta) => { parameter!(eta: "float or array_like" = "The threshold of theta.") };

@@ -40,10 +40,10 @@ impl ForceMap {
     pub fn at(&self, depth: f64, lateral: f64) -> Result<Force<f64>, Refusal> {
         let table = self.0.table();
         table.both()?;
-        if depth <= 0.0 {
+        let first = table.depths()[0];
+        if depth < 0.0 || depth == 0.0 && first > 0.0 {
             return Ok(Force::new(0.0, 0.0));
         }
-        let first = table.depths()[0];
         let (row, share) = match depth < first - SAME_POSITION {
             true => (first, depth / first),
             false => (depth, 1.0),

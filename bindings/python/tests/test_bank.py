@@ -112,6 +112,12 @@ def test_an_inclusion_is_judged_whatever_the_gel_does(bank):
     assert one["inclusion"] is True and one["noise_sd_lateral_n"] is None, one
     assert one["gamma"] < bank.locate(x, noisy(disc), noise_sd_n=0.02, white=True)["gamma"]
     assert bank.judge(x, noisy(gel), zeroed=True)["inclusion"] is None
+    # In air a sensor that was set to zero on the gel would record the same.
+    exact = bank.locate(x, noisy(0 * gel), noise_sd_n=0.05, white=True, zeroed=True)
+    assert exact["inclusion"] is None and exact["causes"] == ["zeroed"] and exact["posterior_h1"] < 0.5
+    watcher = palpate.Watcher(bank, noise_sd_n=0.05, zeroed=True)
+    found = [watcher.push(*sample) for sample in zip(x, noisy(0 * gel)[1])][-1]
+    assert found["decision"] is None and found["excluded"] == 0, found
     assert bank.judge(x, 1000 * gel)["causes"] == ["force_unit"]
     with pytest.raises(palpate.Refused, match="known"):
         bank.judge(x, gel, known=["moon"])

@@ -215,6 +215,10 @@ def test_there_is_no_force_in_air_and_a_line_to_the_first_depth(force_map):
             # Single precision.
             assert np.allclose(table.force(depth, lateral), expected, rtol=1e-6, atol=0)
     assert force_map.force(-3, 99) == (0, 0)
+    # A measured map may begin at the surface, with a force there: 0.015 N.
+    measured = palpate.ForceMap([0, 1], [-1, 1], np.zeros((2, 2)), [[0.015, 0.015], [0.3, 0.3]])
+    for of_pose in (measured.force, palpate.ServoTable(measured).force):
+        assert np.allclose(of_pose(0, 0), [0, 0.015], rtol=1e-6, atol=0)
 
 
 # PYT-056.

@@ -166,11 +166,10 @@ impl BankSearch<'_> {
             } else {
                 (test.theta(), eta)
             };
-            let decision = decide(decisive, eta)?;
-            let causes = fit.causes();
+            let (decision, causes) = self.question.verdict(decide(decisive, eta)?, &fit);
             let place = detector.place(&statistic);
             Ok(Location {
-                decision: causes.is_empty().then_some(decision),
+                decision,
                 causes,
                 point: self.bank.point(likeliest),
                 theta_max: test.theta(),

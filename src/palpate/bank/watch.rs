@@ -354,6 +354,8 @@ impl Watcher {
         of.gamma_squared >= -2.0 * self.question.test.lower()
     }
 
+    /// Whether an inclusion there is excluded, if the sensor touches the gel.
+    ///
     /// Implements: SEQ-021.
     pub(super) fn is_excluded(&self, of: Evidence) -> bool {
         self.is_covered(of) && of.theta() <= self.question.test.lower()
@@ -371,7 +373,16 @@ impl Watcher {
         let beyond = self.found.residual() - told - degrees;
         let width = 2.0 * libm::sqrt(MISFIT * degrees.max(0.0));
         let is_misfit = degrees > 0.0 && (beyond < -width || beyond > width + 2.0 * MISFIT);
-        let causes = [(is_in_air, Cause::NoContact), (is_misfit, Cause::Misfit)];
+        // In air it would be the same, so that an answer that there is nothing does not begin.
+        let is_silent = self.question.is_zeroed
+            && !is_misfit
+            && self.answered.is_none()
+            && self.possible().all(|(_, of)| self.is_excluded(of));
+        let causes = [
+            (is_in_air, Cause::NoContact),
+            (is_misfit, Cause::Misfit),
+            (is_silent, Cause::Zeroed),
+        ];
         causes
             .into_iter()
             .filter_map(|(is_so, cause)| is_so.then_some(cause))
@@ -385,9 +396,10 @@ impl Watcher {
 
     /// What the samples so far say of each place that may be there.
     ///
-    /// Implements: SEQ-026.
+    /// Implements: SEQ-021, SEQ-026.
     pub fn places(&self) -> Vec<WatchedPlace> {
-        let may_be_excluded = self.causes(self.likeliest()).next().is_none();
+        let is_explained = self.causes(self.likeliest()).next().is_none();
+        let may_be_excluded = is_explained && !self.question.is_zeroed;
         let place = |(place, of): (usize, Evidence)| WatchedPlace {
             position: self.points[place][0],
             depth: self.points[place][1],

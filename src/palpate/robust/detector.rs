@@ -166,14 +166,17 @@ impl<'a> RobustDetector<'a> {
 
     /// The records without glitches, of which `answer` gets level, noise and glitches, or the causes why they cannot be judged.
     ///
-    /// Implements: ROB-001, ROB-002, ROB-007, ROB-011.
+    /// Implements: ROB-001, ROB-002, ROB-007, ROB-011, ROB-081.
     fn cleaned(&self, records: &[Force<&[f64]>], answer: &mut RobustAnswer) -> Vec<Cleaned> {
         let mut all = Vec::new();
+        let pairs = self.sweeps.iter().zip(records);
+        let levels = pairs.map(|(sweep, forces)| sweep.level(&self.question, forces.normal));
+        let level = self.level(&levels.collect::<Vec<_>>());
         for (sweep, forces) in self.sweeps.iter().zip(records) {
             let in_air = sweep.in_air(&self.question, forces.normal);
             answer.in_air.push(in_air);
             let cleaned = match in_air {
-                [0, 0] => sweep.cleaned(&self.question, *forces),
+                [0, 0] => sweep.cleaned(&self.question, *forces, level),
                 _ => Err(Cause::InAir),
             };
             match cleaned {

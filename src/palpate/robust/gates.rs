@@ -47,7 +47,8 @@ pub fn is_saturated(channel: &[f64]) -> bool {
 pub fn is_stuck(normal: &[f64]) -> bool {
     let sorted = sorted(normal);
     let runs = sorted.chunk_by(|a, b| a == b).map(<[f64]>::len);
-    runs.max() >= Some((STUCK * sorted.len() as f64) as usize)
+    let is_most = |most: usize| most as f64 >= STUCK * sorted.len() as f64;
+    runs.max().is_some_and(is_most)
 }
 
 fn sorted(channel: &[f64]) -> Vec<f64> {
@@ -66,10 +67,11 @@ pub fn step(channel: &[f64]) -> f64 {
     if least.is_finite() { least } else { 0.0 }
 }
 
-/// Replaces glitches by what the modes say of the samples beside them; their number, or none if there are too many.
+/// Replaces glitches by what the modes say of the samples beside them; their number, or none if there are too many. The noise has at
+/// least the variance `least`, N².
 ///
 /// Implements: ROB-002.
-pub fn without_glitches(modes: &Modes, channel: &mut [f64], step: f64) -> Option<usize> {
+pub fn without_glitches(modes: &Modes, channel: &mut [f64], least: f64) -> Option<usize> {
     let samples = channel.len();
     let most = MOST_GLITCHES.max((MOST_GLITCHES_SHARE * samples as f64) as usize);
     let free: Vec<f64> = (0..samples)
@@ -81,8 +83,12 @@ pub fn without_glitches(modes: &Modes, channel: &mut [f64], step: f64) -> Option
         let squares: f64 = left.iter().map(|r| r * r).sum();
         let score = |at: usize| {
             let own = left[at] * left[at] / free[at];
-            let others = ((squares - own) / (degrees - 1.0)).max(step * step / 12.0);
-            own / others.max(f64::MIN_POSITIVE)
+            let others = match degrees > 1.0 {
+                true => (squares - own) / (degrees - 1.0),
+                // The other samples say nothing of the noise.
+                false => 0.0,
+            };
+            own / others.max(least).max(f64::MIN_POSITIVE)
         };
         let worst = (0..samples).max_by(|&a, &b| score(a).total_cmp(&score(b)))?;
         if score(worst) <= GLITCH * GLITCH {

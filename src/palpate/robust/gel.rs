@@ -204,6 +204,17 @@ impl GelChanges {
         records: &[&Record],
         uncertainty: &GelUncertainty,
     ) -> Result<Option<GelChanges>, FemError> {
+        GelChanges::over(
+            reference,
+            &GelChanges::depths_along(reference, records),
+            uncertainty,
+        )
+    }
+
+    /// The depths, m, at which [`GelChanges::along`] computes: those of the same depths are the same.
+    ///
+    /// Implements: ROB-080.
+    pub fn depths_along(reference: &ForceMap, records: &[&Record]) -> Vec<f64> {
         let own = records
             .iter()
             .flat_map(|record| record.depths().into_iter().flatten());
@@ -212,7 +223,7 @@ impl GelChanges {
         let first = rows.partition_point(|row| *row <= least + SAME_POSITION);
         let last = rows.partition_point(|row| *row < most - SAME_POSITION);
         let rows = &rows[first.saturating_sub(1)..(last + 1).min(rows.len())];
-        GelChanges::over(reference, &thinned(rows, MOST_DEPTHS), uncertainty)
+        thinned(rows, MOST_DEPTHS)
     }
 
     /// As [`GelChanges::new`], at all `depths` (m, increasing) under samples with depths of their own.

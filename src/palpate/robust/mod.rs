@@ -232,7 +232,8 @@ impl RobustQuestion<'_> {
             .iter()
             .filter(|sweep| sweep.record.depths().is_none());
         even.try_for_each(|sweep| bank.check_depth(sweep.depth))?;
-        let hypotheses = BankHypotheses::new(bank, prior);
+        let mut hypotheses = BankHypotheses::new(bank, prior);
+        hypotheses.is_zeroed = self.is_zeroed;
         let signals = hypotheses.signals(sweeps)?;
         let without = bank.reference().table();
         let detector = RobustDetector::new(*self, without, sweeps, &signals)?;

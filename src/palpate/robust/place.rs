@@ -22,6 +22,8 @@ pub struct BankHypotheses<'a> {
     bank: &'a Bank,
     /// The maps of each hypothesis, one or two, and its prior given an inclusion.
     of: Vec<(Vec<usize>, f64)>,
+    /// Whether the sensor was set to zero, so that no depth is without an inclusion: in air the record would be the same.
+    pub(super) is_zeroed: bool,
 }
 
 /// One parameter of the inclusion, by whole cells of the bank.
@@ -71,12 +73,13 @@ impl<'a> BankHypotheses<'a> {
             let alike = points[a][1..] == points[b][1..];
             alike && points[b][0] - points[a][0] >= APART - SAME_POSITION
         };
-        let all = (0..maps).flat_map(|a| (0..maps).map(move |b| (a, b)));
-        let pairs: Vec<_> = all.filter(|&(a, b)| is_pair(a, b)).collect();
-        let stride = pairs.len().div_ceil(MOST_PAIRS).max(1);
-        let pairs: Vec<_> = pairs.into_iter().step_by(stride).collect();
         let own = |map: usize| prior.map_or(1.0 / maps as f64, |prior| prior[map]);
         let of_pair = |&(a, b): &(usize, usize)| own(a) * own(b);
+        let all = (0..maps).flat_map(|a| (0..maps).map(move |b| (a, b)));
+        let pairs = all.filter(|pair| is_pair(pair.0, pair.1) && of_pair(pair) > 0.0);
+        let pairs: Vec<_> = pairs.collect();
+        let stride = pairs.len().div_ceil(MOST_PAIRS).max(1);
+        let pairs: Vec<_> = pairs.into_iter().step_by(stride).collect();
         let whole: f64 = pairs.iter().map(of_pair).sum();
         let share = if whole > 0.0 { PAIRS } else { 0.0 };
         let singles = (0..maps).map(|map| (vec![map], (1.0 - share) * own(map)));
@@ -86,6 +89,7 @@ impl<'a> BankHypotheses<'a> {
         BankHypotheses {
             bank,
             of: singles.chain(pairs).filter(is_possible).collect(),
+            is_zeroed: false,
         }
     }
 
@@ -153,7 +157,9 @@ impl<'a> BankHypotheses<'a> {
             intervals: [0, 1, 2, 3].map(axis),
             marginals,
             several: (1.0 - one).max(0.0),
-            none_down_to: self.none_down_to(&answer.thetas),
+            none_down_to: self
+                .none_down_to(&answer.thetas)
+                .filter(|_| !self.is_zeroed),
         }
     }
 

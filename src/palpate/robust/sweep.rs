@@ -30,6 +30,8 @@ pub struct PreparedSweep {
     pub has_lateral: bool,
     pub undisturbed: Undisturbed,
     forces: DVector<f64>,
+    /// Whether its records are in the reverse order of their files.
+    is_reversed: bool,
 }
 
 /// A record without its glitches.
@@ -110,6 +112,7 @@ pub fn prepared(
         has_lateral: !record.forces().lateral.is_empty(),
         undisturbed,
         forces,
+        is_reversed: record.is_reversed(),
     })
 }
 
@@ -182,6 +185,13 @@ fn undisturbed(
     })
 }
 
+/// The least variance of the noise of each channel, N²: that of its resolution, and that which is stated.
+fn least_variance(steps: Force<f64>, stated: Option<Force<f64>>) -> Force<f64> {
+    let stated = stated.unwrap_or_default();
+    let least = |(step, sd): (f64, f64)| f64::max(step * step / 12.0, sd * sd);
+    steps.zip(stated).map(least)
+}
+
 /// The forces at the samples over those at the mean depth.
 fn share(forces: &[f64], even: &[f64]) -> Vec<f64> {
     let share = |(own, even): (&f64, &f64)| match own == even {
@@ -193,7 +203,7 @@ fn share(forces: &[f64], even: &[f64]) -> Vec<f64> {
 }
 
 impl PreparedSweep {
-    /// Samples of a record in air at the start and at the end, but for so few as may be glitches.
+    /// Samples of a record in air at the start and at the end of its file, but for so few as may be glitches.
     ///
     /// Implements: ROB-007.
     pub fn in_air(&self, question: &RobustQuestion<'_>, normal: &[f64]) -> [usize; 2] {
@@ -204,7 +214,10 @@ impl PreparedSweep {
         let of_steps = || steps.map(|step| 0.5 * step * step).sum::<f64>() / normal.len() as f64;
         let stated = question.noise_sd.map(|sd| sd.normal * sd.normal);
         let expected = channels(&self.undisturbed.forces).normal;
-        let ends = in_air(normal, expected, stated.unwrap_or_else(of_steps));
+        let mut ends = in_air(normal, expected, stated.unwrap_or_else(of_steps));
+        if self.is_reversed {
+            ends.reverse();
+        }
         ends.map(|count| {
             if count > gates::MOST_GLITCHES {
                 count
@@ -214,13 +227,25 @@ impl PreparedSweep {
         })
     }
 
-    /// A record of the sweep without its glitches, its level and its noise; or why it cannot be judged.
+    /// The level of a record of the sweep, by its normal forces.
+    ///
+    /// Implements: ROB-003.
+    pub fn level(&self, question: &RobustQuestion<'_>, normal: &[f64]) -> f64 {
+        match question.is_zeroed {
+            true => 1.0,
+            false => level(normal, channels(&self.undisturbed.forces).normal),
+        }
+    }
+
+    /// A record of the sweep without its glitches, its level and its noise; or why it cannot be judged. The `level` of all sweeps says
+    /// what uneven depths add.
     ///
     /// Implements: ROB-001, ROB-002, ROB-004, ROB-011.
     pub fn cleaned(
         &self,
         question: &RobustQuestion<'_>,
         forces: Force<&[f64]>,
+        level: f64,
     ) -> Result<Cleaned, Cause> {
         let modes = &self.modes;
         if is_narrow(modes.width, self.undisturbed.radius) {
@@ -231,9 +256,9 @@ impl PreparedSweep {
             return Err(Cause::Saturated);
         }
         let steps = forces.map(gates::step);
-        let expected = channels(&self.undisturbed.forces).normal;
-        let uneven = self.uneven(level(forces.normal, expected));
-        let clean = |((channel, step), uneven): ((&[f64], f64), &[f64])| {
+        let uneven = self.uneven(level);
+        let least = least_variance(steps, question.noise_sd);
+        let clean = |((channel, least), uneven): ((&[f64], f64), &[f64])| {
             if channel.is_empty() {
                 // Any forces do where none count.
                 return Ok((vec![0.0; modes.samples()], 0));
@@ -242,10 +267,10 @@ impl PreparedSweep {
             let pairs = channel.iter_mut().zip(uneven);
             pairs.for_each(|(force, uneven)| *force -= uneven);
             let glitches =
-                gates::without_glitches(modes, &mut channel, step).ok_or(Cause::Glitches);
+                gates::without_glitches(modes, &mut channel, least).ok_or(Cause::Glitches);
             Ok((channel, glitches?))
         };
-        let Force { lateral, normal } = forces.zip(steps).zip(channels(&uneven)).map(clean);
+        let Force { lateral, normal } = forces.zip(least).zip(channels(&uneven)).map(clean);
         let (lateral, normal) = (lateral?, normal?);
         let glitches = lateral.1 + normal.1;
         let mut forces = Force::new(lateral.0, normal.0);
@@ -259,13 +284,9 @@ impl PreparedSweep {
         channels
             .zip(&uneven)
             .for_each(|(force, uneven)| *force += uneven);
-        let level = match question.is_zeroed {
-            true => 1.0,
-            false => level(&forces.normal, expected),
-        };
         Ok(Cleaned {
+            level: self.level(question, &forces.normal),
             forces,
-            level,
             noise,
             glitches,
         })

@@ -26,6 +26,8 @@ use crate::trace::contact::wrong_level;
 use crate::trace::{Cause, Record};
 use palpate_asserts::assert_near;
 
+mod samples;
+
 fn positions(samples: usize) -> Vec<f64> {
     let step = 16e-3 / (samples - 1) as f64;
     (0..samples).map(|k| step * k as f64 - 8e-3).collect()
@@ -195,8 +197,13 @@ fn broken_sensors_are_seen_and_coarse_ones_pass() {
         (0..161).map(value).collect()
     };
     assert_eq!(
-        [140, 152, 161].map(|count| is_stuck(&most(count))),
-        [false, true, true]
+        [140, 152, 153, 161].map(|count| is_stuck(&most(count))),
+        [false, false, true, true]
+    );
+    let of_few = |count: usize, samples: usize| is_stuck(&most(count)[..samples]);
+    assert_eq!(
+        [(9, 10), (18, 20), (19, 20)].map(|(count, samples)| of_few(count, samples)),
+        [false, false, true]
     );
     let modes = modes(161);
     assert_eq!(without_glitches(&modes, &mut channel.clone(), 0.0), Some(0));
@@ -525,18 +532,22 @@ fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
         (answer.decision, &answer.causes[..]),
         (None, &[Cause::Narrow][..])
     );
-    // A sensor that was set to zero on the gel never says that there is nothing.
+    // A sensor that was set to zero on the gel never says that there is nothing, at no depth.
     let zeroed = RobustQuestion {
         is_zeroed: true,
         ..question
     };
     let flat = record(usize::MAX, 1.0);
     let sweep = at_place(&bank, &flat, Some(&changes));
-    let (answer, _) = zeroed.locate(&bank, None, &[sweep]).unwrap();
+    let (answer, place) = zeroed.locate(&bank, None, &[sweep]).unwrap();
     assert_eq!(
         (answer.decision, &answer.causes[..]),
         (None, &[Cause::Zeroed][..])
     );
+    assert_eq!(place.none_down_to, None);
+    let rows = answer.rows(Some((&bank, &place)));
+    assert!(rows.get("no_inclusion_down_to_m").unwrap().is_null());
+    assert!(!rows.table().contains("no inclusion down to"));
 }
 
 // Verifies: ROB-032.
@@ -594,6 +605,14 @@ fn the_pairs_that_count_are_of_the_whole_bank() {
     assert!((20..=40).contains(&middles.len()), "{}", middles.len());
     let middle = middles.iter().sum::<f64>() / middles.len() as f64;
     assert!(middle.abs() < 0.5e-3, "{middle:e}");
+    // One pair is possible, at −6 and 0 mm.
+    let mut prior = vec![0.0; 17];
+    (prior[2], prior[8]) = (0.5, 0.5);
+    let possible = BankHypotheses::new(&bank, Some(&prior))
+        .signals(&[at_place(&bank, &over, None)])
+        .unwrap();
+    let priors: Vec<f64> = possible.iter().map(|signal| signal.prior).collect();
+    assert_eq!(priors, [0.4, 0.4, 0.2]);
     // A sweep of the left half says nothing of an inclusion at the right, and something of the others.
     let half: Vec<f64> = (0..=64).map(|at| 1.25e-4 * f64::from(at) - 8e-3).collect();
     let normal: Vec<f64> = noise(65, 9)

@@ -39,7 +39,7 @@ pub struct Fit {
     pub whiteness: Option<f64>,
     /// Σ F f/Σ f² of the normal forces; none if the sensor was set to zero on the gel.
     pub level: Option<f64>,
-    /// Samples in air at the start and at the end.
+    /// Samples in air at the start and at the end of the file.
     pub in_air: [usize; 2],
 }
 
@@ -78,6 +78,13 @@ impl Fit {
         let residual = normal(&design.residual);
         let forces: Vec<f64> = residual.iter().zip(&expected).map(|(r, f)| r + f).collect();
         let touches = !question.is_zeroed;
+        let mut ends = match touches {
+            true => in_air(&forces, &expected, noise_sd.normal * noise_sd.normal),
+            false => [0; 2],
+        };
+        if design.is_reversed {
+            ends.reverse();
+        }
         let lateral = white.has_lateral().then_some(noise_sd.lateral);
         Ok(Fit {
             noise_sd: Force::new(lateral, Some(noise_sd.normal)),
@@ -86,10 +93,7 @@ impl Fit {
             degrees,
             whiteness,
             level: touches.then(|| level(&forces, &expected)),
-            in_air: match touches {
-                true => in_air(&forces, &expected, noise_sd.normal * noise_sd.normal),
-                false => [0; 2],
-            },
+            in_air: ends,
         })
     }
 

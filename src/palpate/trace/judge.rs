@@ -62,9 +62,9 @@ impl Question<'_> {
             let statistic = detector.statistic(&mut white.residual.clone())?;
             let test = statistic.test(self.noise_level(), white.bias(&detector))?;
             let threshold = self.threshold(&test)?;
-            let causes = fit.causes();
+            let (decision, causes) = self.verdict(threshold.decide(test.t), &fit);
             Ok(Judgement {
-                decision: causes.is_empty().then(|| threshold.decide(test.t)),
+                decision,
                 causes,
                 test,
                 threshold,

@@ -427,11 +427,16 @@ impl Record {
         &self.positions
     }
 
+    /// Whether its samples are in the reverse order of those in the file, because the probe went towards −x.
+    pub fn is_reversed(&self) -> bool {
+        self.lines[0] > self.lines[self.lines.len() - 1]
+    }
+
     /// How far the probe had moved at each sample, m: from where the record began, whichever way it went.
     pub fn travelled(&self) -> Vec<f64> {
-        let [(first, start), (last, end)] =
-            [0, self.positions.len() - 1].map(|at| (self.lines[at], self.positions[at]));
-        let way = |x: &f64| if first <= last { x - start } else { end - x };
+        let [start, end] = [0, self.positions.len() - 1].map(|at| self.positions[at]);
+        let is_reversed = self.is_reversed();
+        let way = |x: &f64| if is_reversed { end - x } else { x - start };
         self.positions.iter().map(way).collect()
     }
 

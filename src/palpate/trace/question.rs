@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::{Cause, Fit};
+use crate::detect::Decision;
 use crate::detect::nuisance::NoiseLevel;
 use crate::force::Force;
 
@@ -108,6 +110,17 @@ pub fn in_words(unknown: &[Unknown]) -> String {
 impl Question<'_> {
     pub(crate) fn is_unknown(&self, what: Unknown) -> bool {
         self.unknown.contains(&what)
+    }
+
+    /// The decision of a record that fits so, or why it cannot be judged.
+    ///
+    /// Implements: TRC-075, TRC-016.
+    pub(crate) fn verdict(&self, decision: Decision, fit: &Fit) -> (Option<Decision>, Vec<Cause>) {
+        let mut causes = fit.causes();
+        if causes.is_empty() && self.is_zeroed && decision == Decision::NoInclusion {
+            causes.push(Cause::Zeroed);
+        }
+        (causes.is_empty().then_some(decision), causes)
     }
 
     pub(crate) fn noise_level(&self) -> NoiseLevel {

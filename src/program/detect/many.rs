@@ -96,8 +96,8 @@ pub fn detect(asked: Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
         };
         note(format!("{}{more}", files[0]), &text);
     }
-    let passes = alike.values().flatten().flat_map(|(_, passes)| passes);
-    let asked = &asked.with_gels(passes)?;
+    let records = alike.values().flatten();
+    let asked = &asked.with_gels(records.map(|(_, passes)| &passes[..]))?;
     let of = |passes: &[Record]| asked.detector(&asked.sweeps(passes));
     let judge = |records: Vec<(usize, Vec<Record>)>| {
         let first = of(&records[0].1);

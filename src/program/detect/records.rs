@@ -49,8 +49,8 @@ pub struct Asked<'a> {
     /// Of each sweep of a place, m.
     pub depths: Vec<f64>,
     pub references: Vec<Record>,
-    /// The gels beside that of the maps, by the bits of the depth; none of the depths of samples.
-    pub changes: BTreeMap<Option<u64>, Option<GelChanges>>,
+    /// The gels beside that of the maps, by the bits of the depths at which they are computed.
+    pub changes: BTreeMap<Vec<u64>, Option<GelChanges>>,
 }
 
 impl<'a> Asked<'a> {
@@ -65,38 +65,50 @@ impl<'a> Asked<'a> {
         Ok(passes.into_iter().flatten().collect())
     }
 
-    /// The same with the reference sweeps, and the gels beside that of the maps under the `records`.
+    /// The same with the reference sweeps, and the gels beside that of the maps under the records that are judged `together`.
     ///
     /// Implements: ROB-080.
     pub fn with_gels<'r>(
         mut self,
-        records: impl Iterator<Item = &'r Record>,
+        together: impl Iterator<Item = &'r [Record]>,
     ) -> Result<Asked<'a>, CliError> {
         let model = &self.arguments.model;
-        let references = self.read_all(&model.reference_sweeps)?;
+        self.references = self.read_all(&model.reference_sweeps)?;
         let file = model.gel_uncertainty.as_ref();
         let uncertainty = file.map(|file| GelUncertainty::read(file)).transpose()?;
         let uncertainty = uncertainty.unwrap_or_default().beside(self.question.known);
         let reference = self.reference();
         let name = reference.phantom().map_or("", Phantom::name);
-        let mut all: Vec<&Record> = records.collect();
-        all.extend(&references);
-        let (own, even): (Vec<_>, Vec<_>) =
-            (all.into_iter()).partition(|record| record.depths().is_some());
-        for &depth in self.depths.iter().filter(|_| !even.is_empty()) {
-            self.bank().map_or(Ok(()), |bank| bank.check_depth(depth))?;
-            if let Entry::Vacant(entry) = self.changes.entry(Some(depth.to_bits())) {
-                let found = GelChanges::new(reference, depth, &uncertainty);
-                entry.insert(found.map_err(CliError::fem(name))?);
+        for records in together {
+            for depths in self.depths_of_gels(records)? {
+                if let Entry::Vacant(entry) = self.changes.entry(bits(&depths)) {
+                    let found = GelChanges::over(reference, &depths, &uncertainty);
+                    entry.insert(found.map_err(CliError::fem(name))?);
+                }
             }
         }
-        if !own.is_empty() {
-            let found = GelChanges::along(reference, &own, &uncertainty);
-            self.changes
-                .insert(None, found.map_err(CliError::fem(name))?);
-        }
-        self.references = references;
         Ok(self)
+    }
+
+    /// The lists of depths at which the gels are needed for records that are judged together, m.
+    fn depths_of_gels(&self, records: &[Record]) -> Result<Vec<Vec<f64>>, Refusal> {
+        let mut all = records.iter().chain(&self.references);
+        let mut lists = Vec::new();
+        if all.any(|record| record.depths().is_none()) {
+            for &depth in &self.depths {
+                self.bank().map_or(Ok(()), |bank| bank.check_depth(depth))?;
+                lists.push(vec![depth]);
+            }
+        }
+        lists.extend(self.depths_along(records));
+        Ok(lists)
+    }
+
+    /// The depths under those of the records, judged together, whose samples have depths of their own, m; none if there is none.
+    fn depths_along(&self, records: &[Record]) -> Option<Vec<f64>> {
+        let all = records.iter().chain(&self.references);
+        let own: Vec<_> = all.filter(|record| record.depths().is_some()).collect();
+        (!own.is_empty()).then(|| GelChanges::depths_along(self.reference(), &own))
     }
 
     /// The map without an inclusion.
@@ -139,22 +151,25 @@ impl<'a> Asked<'a> {
     /// The sweeps of a place, and behind them the reference sweeps, at the first depth.
     pub fn sweeps<'r>(&'r self, records: &'r [Record]) -> Vec<RobustSweep<'r>> {
         let all = records.iter().chain(&self.references).enumerate();
+        let along = self.depths_along(records).unwrap_or_default();
         let sweep = |(number, record)| {
             let depth = *self.depths.get(number).unwrap_or(&self.depths[0]);
             RobustSweep {
                 record,
                 depth,
-                changes: self.changes(record, depth),
+                changes: match record.depths() {
+                    Some(_) => self.changes(&along),
+                    None => self.changes(&[depth]),
+                },
                 is_reference: number >= records.len(),
             }
         };
         all.map(sweep).collect()
     }
 
-    /// The gels beside that of the maps under a record at a depth, or at its own depths.
-    fn changes(&self, record: &Record, depth: f64) -> Option<&GelChanges> {
-        let key = record.depths().is_none().then_some(depth.to_bits());
-        self.changes.get(&key)?.as_ref()
+    /// The gels beside that of the maps that are computed at these depths, m.
+    fn changes(&self, depths: &[f64]) -> Option<&GelChanges> {
+        self.changes.get(&bits(depths))?.as_ref()
     }
 
     /// The detector for records over the positions of these sweeps.
@@ -183,6 +198,11 @@ impl<'a> Asked<'a> {
         rows.value("warnings", self.warnings.0.clone());
         rows
     }
+}
+
+/// Depths as a key.
+fn bits(depths: &[f64]) -> Vec<u64> {
+    depths.iter().map(|depth| depth.to_bits()).collect()
 }
 
 /// The detector of the inclusion of a map, or of any of a bank.

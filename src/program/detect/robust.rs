@@ -111,7 +111,7 @@ pub fn detect(arguments: &DetectArguments, layout: &Layout) -> Result<(), CliErr
 fn one(asked: Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
     let arguments = asked.arguments;
     let records = asked.read_all(traces)?;
-    let asked = asked.with_gels(records.iter())?;
+    let asked = asked.with_gels([&records[..]].into_iter())?;
     let sweeps = asked.sweeps(&records);
     let (answer, place) = asked.detector(&sweeps)?.judge(&sweeps)?;
     for (sweep, replaced) in sweeps.iter().zip(&answer.glitches) {

@@ -287,8 +287,9 @@ fn a_record_that_no_hypothesis_explains_is_not_answered() {
         is_zeroed: true,
         ..question.clone()
     };
+    // The same in air as on the gel: nothing speaks against either.
     let on_gel = watched(&zeroed, air.iter().copied()).answer().unwrap();
-    assert_eq!(on_gel.decision, Some(Decision::NoInclusion));
+    assert_eq!(on_gel.causes, [Cause::Zeroed]);
     // The probe comes down at 0: a step.
     let step: Vec<_> = air[..30].iter().chain(&gel[30..]).copied().collect();
     let found = watched(&zeroed, step).answer().unwrap();
@@ -324,6 +325,81 @@ fn a_record_that_no_hypothesis_explains_is_not_answered() {
         ),
         (None, None, &[Cause::Misfit][..])
     );
+}
+
+// Verifies: SEQ-020, SEQ-021, SEQ-022, SEQ-023, SEQ-026.
+#[test]
+fn a_sensor_set_to_zero_never_excludes_a_place() {
+    let bank = all();
+    let zeroed = WatchQuestion {
+        is_zeroed: true,
+        ..question(&[Unknown::Offset, Unknown::Gain])
+    };
+    // In air, where the noise is alone, and on the gel.
+    for gain in [0.0, 1.1] {
+        let nothing = samples(&record(&reference(), Some(3), 0.2, gain));
+        let half = watched(&zeroed, nothing[..30].iter().copied());
+        let half = half.answer().unwrap();
+        assert_eq!(
+            (half.decision, half.excluded, half.causes.len()),
+            (None, 0, 0)
+        );
+        let whole = watched(&zeroed, nothing);
+        let told: Vec<Told> = whole.places().iter().map(|place| place.told).collect();
+        assert_eq!(told, [Told::Open; 40]);
+        let found = whole.answer().unwrap();
+        assert_eq!(
+            (found.decision, &found.causes[..]),
+            (None, &[Cause::Zeroed][..])
+        );
+        assert_eq!((found.covered, found.excluded), (40, 0));
+        assert_eq!(found.open_positions_m.len(), 5);
+    }
+    let with = map(Some((-1.0, 4.0, 8.0)), &[4e-3]);
+    let with = samples(&record(&with, Some(4), -1.2, 1.1));
+    let found = watched(&zeroed, with).answer().unwrap();
+    assert_eq!(
+        (found.decision, &found.causes[..]),
+        (Some(Decision::Inclusion), &[][..])
+    );
+    assert_eq!(found.excluded, 0);
+    assert_eq!(bank.maps().len(), found.places);
+}
+
+// The first pass is over an inclusion; the second takes its force back, and the others are over a gel without one.
+// Verifies: SEQ-020, SEQ-023.
+#[test]
+fn an_inclusion_that_a_sensor_set_to_zero_told_stays_told() {
+    let sd = 0.3;
+    let zeroed = WatchQuestion {
+        is_zeroed: true,
+        noise_sd: Force::new(sd, sd),
+        ..question(&[Unknown::Offset])
+    };
+    let (with, without) = (map(Some((0.0, 3.0, 8.0)), &[4e-3]), reference());
+    let exact = |map: &ForceMap| samples(&record(map, None, -1.0, 1.0));
+    let (with, without) = (exact(&with), exact(&without));
+    let mut watcher = watched(&zeroed, None);
+    let mut noise = vec![0.0; 2 * with.len()];
+    for pass in 0..12 {
+        Generator::new(20_261_128, 0).normals(pass, 0, &mut noise);
+        let share = [1.0, -1.0].get(pass as usize).unwrap_or(&0.0);
+        for (at, (with, without)) in with.iter().zip(&without).enumerate() {
+            let normal = without.2 + share * (with.2 - without.2) + sd * noise[2 * at];
+            let lateral = Some(sd * noise[2 * at + 1]);
+            watcher.push(with.0, lateral, normal).unwrap();
+        }
+        let found = watcher.answer().unwrap();
+        assert_eq!(
+            found.decision,
+            Some(Decision::Inclusion),
+            "{pass} {found:?}"
+        );
+    }
+    // By now every place would be excluded.
+    let bound = TEST[1].ln();
+    let is_excluded = |of: Evidence| of.theta() <= bound && of.gamma_squared >= -2.0 * bound;
+    assert!(watcher.found.evidence().all(is_excluded));
 }
 
 // Verifies: SEQ-002.
@@ -423,7 +499,6 @@ fn answers(trials: u64, map: Option<usize>) -> [u64; 3] {
     let (bank, sd) = (all(), 0.4);
     let question = WatchQuestion {
         noise_sd: Force::new(sd, sd),
-        is_zeroed: true,
         ..question(USUAL)
     };
     let fresh = Watcher::new(&bank, &question).unwrap();

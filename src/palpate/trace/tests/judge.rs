@@ -378,6 +378,52 @@ fn asked(record: &Record, unknown: &[Unknown], sd: Option<f64>) -> Judgement {
     question.judge(hypotheses, record).unwrap()
 }
 
+// Verifies: TRC-016, TRC-075, CLI-143.
+#[test]
+fn a_sensor_set_to_zero_never_tells_that_there_is_nothing() {
+    let judged = |record: &Record, stated: f64, criterion| {
+        let (without, with) = (gel(0.0), gel(0.5));
+        let sd = Some(Force::new(stated, stated));
+        let question = Question {
+            is_zeroed: true,
+            unknown: USUAL,
+            noise: noise(sd, Correlation::OfRecord),
+            criterion,
+            ..question(4e-3)
+        };
+        let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+        question.judge(hypotheses, record).unwrap()
+    };
+    let generator = Generator::new(20_261_127, 1);
+    let white = |i: usize| [0, 1].map(|channel| 0.1 * generator.normal(channel, i as u64));
+    let gel = sweep(0.0, 1);
+    let air = record(gel.positions.clone(), white);
+    // Thresholds far from noise alone.
+    let few_misses = Criterion::NeymanPearsonMiss { max_miss: 1e-3 };
+    for criterion in [Criterion::MaximumAPosteriori, few_misses] {
+        for nothing in [&air, &gel] {
+            let found = judged(nothing, 0.1, criterion);
+            assert_eq!(
+                (found.decision, &found.causes[..]),
+                (None, &[Cause::Zeroed][..])
+            );
+            assert!(found.rows().get("posterior_h1").unwrap().is_f64());
+        }
+        let found = judged(&sweep(0.5, 1), 0.1, criterion);
+        assert_eq!(
+            (found.decision, &found.causes[..]),
+            (Some(Decision::Inclusion), &[][..])
+        );
+    }
+    // What does not fit is no record of air either.
+    let found = judged(&air, 0.035, Criterion::MaximumAPosteriori);
+    assert_eq!(
+        (found.decision, &found.causes[..]),
+        (None, &[Cause::Misfit][..])
+    );
+    assert!(found.rows().get("posterior_h1").unwrap().is_null());
+}
+
 /// All that is unknown unless a user says otherwise.
 const USUAL: &[Unknown] = {
     use Unknown::{Drift, Gain, Offset, Variance};
@@ -510,5 +556,22 @@ fn a_blank_sweep_tells_its_noise() {
         let error = Noise::of_blank(&trace).unwrap_err().to_string();
         let expected = format!("blank.csv: {expected}");
         assert!(error.starts_with(&expected), "{error}");
+    }
+}
+
+// Verifies: TRC-017, TRC-010.
+#[test]
+fn samples_in_air_are_those_at_the_start_of_the_file_whichever_way_the_probe_went() {
+    let there: Vec<f64> = (0..41).map(|k| 0.4e-3 * f64::from(k) - 8e-3).collect();
+    let back: Vec<f64> = there.iter().rev().copied().collect();
+    let maps = [0.0, 0.2].map(gel);
+    let hypotheses = Hypotheses::of_tables(&maps[0], &maps[1]).unwrap();
+    for over in [there, back] {
+        let mut forces = maps[0].sweep(4e-3, &over).unwrap();
+        forces.normal[..10].fill(0.0);
+        let record = Record::new("sweep", &over, forces.as_deref()).unwrap();
+        let found = question(4e-3).judge(hypotheses, &record).unwrap();
+        assert_eq!(found.fit.in_air, [10, 0]);
+        assert!(found.causes.contains(&Cause::InAir));
     }
 }
