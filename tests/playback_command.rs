@@ -2,6 +2,10 @@
 
 use std::fs::File;
 use std::io::Write;
+#[cfg(unix)]
+use std::io::{BufRead, BufReader};
+#[cfg(unix)]
+use std::os::unix::process::CommandExt;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -239,7 +243,12 @@ fn signals_end_a_session_as_asked() {
 // Verifies: CLI-070, CLI-071, CLI-072.
 #[test]
 fn an_experiment_goes_on_after_an_abort() {
-    let here = place("experiment", &[("none", 300.0, 0.0), ("bump", 300.0, 60.0)]);
+    let maps = [
+        ("none", 300.0, 0.0),
+        ("bump", 300.0, 60.0),
+        ("other", 300.0, 61.0),
+    ];
+    let here = place("experiment", &maps);
     let line =
         "experiment --reference none --inclusion 6.6=bump --journal journal --seed 5 --trials";
     let ideal = format!("{line} 20 --observer ideal --noise 2");
@@ -253,15 +262,28 @@ fn an_experiment_goes_on_after_an_abort() {
     assert_eq!(here.succeed(&ideal), row);
     assert_eq!(here.read("journal"), answers);
     // Another experiment in the same journal.
-    let refusal = here.refused(&format!("{line} 21 --observer ideal --noise 2"));
-    assert_has(
-        &refusal,
-        "journal: belongs to a different request or version",
-    );
-    assert_eq!(here.read("journal"), answers);
+    for other in [
+        ideal.replace("--trials 20", "--trials 21"),
+        ideal.replace("--noise 2", "--noise 0.5"),
+        format!("{ideal} --seconds 1"),
+        ideal.replace("6.6=bump", "6.6=other"),
+        format!("{line} 20"),
+    ] {
+        assert_ne!(other, ideal);
+        let told = "journal: belongs to a different request or version";
+        assert_has(&here.refused(&other), told);
+        assert_eq!(here.read("journal"), answers, "{other}");
+    }
+    let old = answers.replacen("\"schema_version\":2", "\"schema_version\":1", 1);
+    here.write("journal", &old);
+    assert_has(&here.refused(&ideal), "different request or version");
+    assert_eq!(here.read("journal"), old);
     // A person who goes away keeps what was answered.
-    here.write("journal", kept);
-    let mut person = here.palpate(&format!("{line} 20"));
+    let person = format!("{line} 20").replace("--journal journal", "--journal person");
+    here.succeed(&person);
+    let seven = "{\"right\":true}\n".repeat(7);
+    here.write("person", here.read("person") + &seven);
+    let mut person = here.palpate(&person);
     person.stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = person.stdin(Stdio::piped()).spawn().unwrap();
     let mut keyboard = child.stdin.take().unwrap();
@@ -429,6 +451,34 @@ fn the_bridge_drops_the_force_of_a_loop_that_falls_silent() {
         let (before, _) = said.split_once(" positions, ").expect(&said);
         let positions: u32 = before.rsplit(' ').next().unwrap().parse().unwrap();
         assert!(positions < 500, "{said}");
+    }
+}
+
+/// Sent to the bridge and its child, as a terminal does, or to the bridge alone.
+// Verifies: CLI-066, HID-113.
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_a_bridge_without_a_force() {
+    let here = place("signals", &[("gel", 300.0, 0.0)]);
+    let program = bridge(&here);
+    for (signal, group) in [("-INT", "-"), ("-HUP", "-"), ("-TERM", "")] {
+        let mut bridge = Command::new(&program);
+        bridge.current_dir(here.at("")).arg(crate::program::PROGRAM);
+        bridge.args("play --map gel --device pipe --seconds 60".split(' '));
+        bridge.stderr(Stdio::piped()).process_group(0);
+        let mut bridge = bridge.spawn().unwrap();
+        let mut lines = BufReader::new(bridge.stderr.take().unwrap()).lines();
+        let plays =
+            |line: &String| line.contains("vendor: force ") && !line.contains("force 0.0000");
+        assert!(lines.by_ref().map(Result::unwrap).any(|line| plays(&line)));
+        let target = format!("{group}{}", bridge.id());
+        let sent = Command::new("kill").args([signal, "--", &target]).status();
+        assert!(sent.unwrap().success());
+        let rest: Vec<String> = lines.map(Result::unwrap).collect();
+        let said = rest.join("\n");
+        assert_has(&said, "last force 0.0000 0.0000 N");
+        // Ended by the bridge itself, with palpate's exit code: not by the signal.
+        assert!(bridge.wait().unwrap().code().is_some(), "{signal}: {said}");
     }
 }
 

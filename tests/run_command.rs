@@ -68,6 +68,67 @@ fn theories_are_compared_by_forces_that_another_program_found() {
     assert_has(&figure, "finite strain, friction 0.3");
 }
 
+const ONE_POSE: &str = "reference = \"gel.toml\"\nphantoms = []\ndepths_mm = \"1\"\nlaterals_mm = \"0\"\n[mesh]\nsize_mm = 3.0\n";
+
+/// A gel with Poisson's ratio `ratio`, with the first line of its file.
+fn gel(ratio: f64, first: &str) -> String {
+    format!(
+        "{first}name = \"gel\"\nwell = {{ width_mm = 34 }}\nprobe = {{ radius_mm = 6.5, length_mm = 30 }}\n[[layer]]\nthickness_mm = 15\nyoungs_modulus_kpa = 5\npoisson_ratio = {ratio}\n"
+    )
+}
+
+// Verifies: CLI-179, REP-090.
+#[test]
+fn theories_are_compared_up_to_the_largest_poisson_ratio_of_all() {
+    let here = Place::new("largest-ratio");
+    here.write("run.toml", ONE_POSE);
+    let leverages = |ratio: f64| -> Vec<f64> {
+        here.write("gel.toml", gel(ratio, ""));
+        let out = format!("out-{ratio}");
+        here.succeed(&format!(
+            "run --config run.toml --compare-theories --out {out}"
+        ));
+        let summary = here.read(&format!("{out}/summary.json"));
+        let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+        let theories = summary["findings"]["theories"].as_array().unwrap();
+        let leverage = |of: &serde_json::Value| of["poisson_leverage"].as_f64().unwrap();
+        theories.iter().map(leverage).collect()
+    };
+    // From below at small strain, and on both sides at finite strain and just beneath the limit: a smooth function of the ratio.
+    let (most, less) = (leverages(0.4995), leverages(0.4989));
+    let pairs = most.iter().zip(&less);
+    for (most, less) in pairs.clone() {
+        assert!(
+            *most > 0.0 && (most / less - 1.0).abs() < 0.05,
+            "{most:?} {less:?}"
+        );
+    }
+    assert_eq!(pairs.count(), 3);
+}
+
+// Verifies: CLI-179.
+#[test]
+fn what_a_theory_does_not_have_is_refused_at_once() {
+    let here = Place::new("refused-theory");
+    here.write("gel.toml", gel(0.4999, "strain = \"finite\"\n"));
+    here.write("run.toml", ONE_POSE);
+    let told = here.refused("run --config run.toml --compare-theories");
+    let expected = "--compare-theories: at small strain, friction 0, phantom gel: layer[0].poisson_ratio = 0.4999, but must be above -1.0 and at most 0.4995";
+    assert_eq!(told, expected);
+    here.write("gel.toml", gel(0.49, ""));
+    here.write(
+        "run.toml",
+        format!("{ONE_POSE}contact = \"vertical-gap\"\n"),
+    );
+    let told = here.refused("run --config run.toml --compare-theories");
+    assert_has(
+        &told,
+        "at finite strain, friction 0, phantom gel: vertical-gap contact at finite strain",
+    );
+    // Before the folder is made.
+    assert!(!here.at("palpate-out").exists());
+}
+
 // Verifies: CLI-180, FEM-016.
 #[test]
 fn a_path_prints_a_row_for_each_pose_and_writes_a_series() {

@@ -95,6 +95,11 @@ fn a_path_that_turns_the_gel_inside_out_is_an_error_and_one_far_away_is_refused(
             "simulate --phantom 2.6 --from-mm 0 --to-mm 1 --depths-mm {depth}"
         ))
     };
+    // Between the rows at 4 and 4.5 mm of the map.
+    let output = simulate("4.49");
+    assert_eq!(output.status.code(), Some(4), "{output:?}");
+    let told = text(&output.stderr);
+    assert_has(told, "phantom 2.6|at depth 4.49 mm|inside out");
     // The map reaches 5 mm, where palpate solve finds a gel inside out, but the path does not.
     let output = simulate("4");
     assert!(output.status.success(), "{output:?}");
@@ -107,6 +112,39 @@ fn a_path_that_turns_the_gel_inside_out_is_an_error_and_one_far_away_is_refused(
     // As it is asked, not the first pose on the way there.
     let refused = place.refused("simulate --phantom 2.6 --depths-mm 1000");
     assert_has(&refused, "phantom 2.6: depth_mm = 1000.0, but must be");
+}
+
+// Verifies: CLI-231, CLI-232.
+#[test]
+fn a_path_may_go_where_its_margin_may_not() {
+    let place = Place::new("simulate-wall");
+    // The probe clears the walls up to 12.3 mm at 2 mm, not at 2.5 mm.
+    for ends in ["--from-mm 11.5 --to-mm 12", "--from-mm 12.3 --to-mm -12.3"] {
+        let line = format!("simulate --phantom none --depths-mm 2 {ends} --speed-mm-s 5");
+        let record = place.succeed(&line);
+        let position = |row: &str| row.split(',').next().unwrap().parse::<f64>().unwrap();
+        let largest = record.lines().skip(1).map(position).fold(0.0, f64::max);
+        let end = if ends.contains("12.3") { 12.3 } else { 12.0 };
+        assert!((largest - end).abs() < 1e-6, "{record}");
+    }
+    let told = place.refused("simulate --phantom none --depths-mm 2 --from-mm 0 --to-mm 12.4");
+    assert_has(&told, "phantom none: lateral_mm = 12.4, but must be");
+}
+
+// Verifies: CLI-010.
+#[test]
+fn the_depths_of_passes_are_a_list() {
+    let place = Place::new("simulate-list");
+    let map =
+        place.succeed("solve --phantom none --depths-mm 0,4 --laterals-mm=-4,4 --format json");
+    place.write("map.json", map);
+    let record = |depths: &str| {
+        place.succeed(&format!(
+            "simulate --map map.json --from-mm -3 --to-mm 3 --depths-mm {depths}"
+        ))
+    };
+    assert_eq!(record("1:4:1"), record("1,2,3,4"));
+    assert_ne!(record("4,3"), record("3,4"));
 }
 
 // Verifies: CLI-235.

@@ -8,6 +8,7 @@ use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
+use sha2::{Digest, Sha256};
 
 use super::CliError;
 use super::error::refuse;
@@ -106,9 +107,11 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
     if arguments.observer == Observer::Ideal && !arguments.device.is_simulated() {
         refuse!("--observer ideal has no hand; use --device sim");
     }
-    let setup = arguments.setup();
-    let mut experiment = Experiment::new(setup.clone())?;
+    let mut setup = arguments.setup();
+    setup.check_names()?;
     let pairs = Pairs::read(arguments)?;
+    setup.maps_sha256 = pairs.sums();
+    let mut experiment = Experiment::new(setup.clone())?;
     let path = arguments.journal.clone();
     let take = |line: &str| experiment.take(line);
     let journal = Journal::open(path, &setup, "palpate experiment", take)?;
@@ -142,15 +145,29 @@ impl ExperimentArguments {
         self.inclusion.len() * self.trials as usize
     }
 
+    /// The ideal observer's noise, N; none where a person answers.
+    fn noise_sd(&self) -> Option<f64> {
+        self.noise.filter(|_| self.observer == Observer::Ideal)
+    }
+
+    /// All but the maps, which are not read yet.
     fn setup(&self) -> Setup {
         let names = self.inclusion.iter().map(|(name, _)| name.clone());
+        let observer = match self.observer {
+            Observer::Person => "person",
+            Observer::Ideal => "ideal",
+        };
         Setup {
-            schema_version: 1,
+            schema_version: 2,
             seed: self.seed,
             trials: self.trials as usize,
             subject: self.subject.clone(),
             condition: self.condition.clone(),
             inclusions: names.collect(),
+            observer: observer.into(),
+            noise_sd: self.noise_sd(),
+            seconds: self.seconds,
+            maps_sha256: Vec::new(),
         }
     }
 }
@@ -173,9 +190,9 @@ struct Pairs<'a> {
 impl<'a> Pairs<'a> {
     /// The samples without an inclusion and with each one, of the same gel, checked against the device.
     fn read(arguments: &'a ExperimentArguments) -> Result<Pairs<'a>, CliError> {
-        let limits = limits(4.0)?;
         let capabilities = open(arguments)?.capabilities();
         let capabilities = capabilities.map_err(CliError::refused("device"))?;
+        let limits = limits(4.0, &capabilities)?;
         let damping = arguments.device.damping(&capabilities);
         let sample = |path: &Path| {
             let map = ForceMap::read(path)?;
@@ -199,6 +216,18 @@ impl<'a> Pairs<'a> {
         Ok(pairs)
     }
 
+    /// SHA-256 of each map as it is written, the one without an inclusion first.
+    ///
+    /// Implements: CLI-072.
+    fn sums(&self) -> Vec<String> {
+        let samples = std::iter::once(&self.reference).chain(&self.inclusions);
+        let sum = |(map, _): &Sample| {
+            let digest = Sha256::digest(map.to_json());
+            digest.iter().map(|byte| format!("{byte:02x}")).collect()
+        };
+        samples.map(sum).collect()
+    }
+
     /// The forces without the inclusion of this number, and with it.
     fn hypotheses(&self, number: usize) -> Result<Hypotheses<'_>, CliError> {
         let path = &self.arguments.inclusion[number].1;
@@ -212,8 +241,7 @@ impl<'a> Pairs<'a> {
         if trial.with_inclusion == Interval::First {
             samples.reverse();
         }
-        let is_ideal = self.arguments.observer == Observer::Ideal;
-        let Some(noise_sd) = self.arguments.noise.filter(|_| is_ideal) else {
+        let Some(noise_sd) = self.arguments.noise_sd() else {
             return self.ask(number, samples);
         };
         let observer = IdealObserver {

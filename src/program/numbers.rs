@@ -42,6 +42,36 @@ pub fn positions(text: &str) -> Result<List, String> {
     list(text, -3, "positions", "mm")
 }
 
+/// Reads a list of depths of the probe in mm, as [`positions`].
+///
+/// Implements: CLI-010.
+///
+/// # Errors
+/// As [`positions`]; a depth below 0.
+pub fn depths(text: &str) -> Result<List, String> {
+    let depths = positions(text)?;
+    match depths.first() {
+        Some(first) if *first < 0.0 => {
+            Err("must be depths of at least 0 in mm; 0 is the undeformed surface".into())
+        }
+        _ => Ok(depths),
+    }
+}
+
+/// Reads a list of depths above 0 in mm, one for each pass of a path, in any order.
+///
+/// Implements: CLI-010.
+///
+/// # Errors
+/// As [`positions`], but for the order; a depth that is not above 0.
+pub fn passes(text: &str) -> Result<List, String> {
+    let depths = entries(text, -3, "passes", "mm")?;
+    match depths.iter().all(|depth| *depth > 0.0) {
+        true => Ok(depths),
+        false => Err("must be depths above 0 in mm, such as 1,2,3,4".into()),
+    }
+}
+
 /// Reads a list of lengths above 0 in mm, as [`positions`].
 ///
 /// Implements: CLI-202.
@@ -158,10 +188,22 @@ pub fn probability(text: &str) -> Result<f64, String> {
     number(text, 0, is_right, "a probability strictly between 0 and 1")
 }
 
-/// Reads a list `of` numbers that are written in a `unit` of 10^`power` SI.
+/// Reads a list `of` numbers that increase and are written in a `unit` of 10^`power` SI.
 ///
 /// Implements: CON-001.
 fn list(text: &str, power: i32, of: &str, unit: &str) -> Result<List, String> {
+    let values = entries(text, power, of, unit)?;
+    let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else {
+        return Ok(values);
+    };
+    let [before, after] = [pair[0], pair[1]].map(|value| format_scaled(value, -power));
+    Err(format!(
+        "{after} {unit} after {before} {unit}: {of} must increase"
+    ))
+}
+
+/// Reads a list as [`list`], in any order.
+fn entries(text: &str, power: i32, of: &str, unit: &str) -> Result<List, String> {
     let value = |text: &str| {
         let value = parse_scaled(text, power);
         value.ok_or_else(|| format!("{text:?} is not a number in {unit}, such as 2.5"))
@@ -196,13 +238,7 @@ fn list(text: &str, power: i32, of: &str, unit: &str) -> Result<List, String> {
             "{count} {of} are too many; at most {MOST} are allowed"
         ));
     }
-    let Some(pair) = values.windows(2).find(|pair| pair[0] >= pair[1]) else {
-        return Ok(values);
-    };
-    let [before, after] = [pair[0], pair[1]].map(|value| format_scaled(value, -power));
-    Err(format!(
-        "{after} {unit} after {before} {unit}: {of} must increase"
-    ))
+    Ok(values)
 }
 
 /// A number of `unit` as a number of steps of 10⁻⁹.
@@ -237,6 +273,25 @@ mod tests {
         assert_eq!(moduli("0.1:0.3:0.1"), Ok(vec![100.0, 200.0, 300.0]));
         let error = moduli("300,44").unwrap_err();
         assert_eq!(error, "44.0 kPa after 300.0 kPa: moduli must increase");
+    }
+
+    // Verifies: CLI-010.
+    #[test]
+    fn depths_are_lists_too_and_those_of_passes_in_any_order() {
+        assert_eq!(depths("0:1:0.5"), Ok(vec![0.0, 0.0005, 0.001]));
+        let below = "must be depths of at least 0 in mm; 0 is the undeformed surface";
+        assert_eq!(depths("-1,2"), Err(below.into()));
+        assert_eq!(passes("1:3:1"), Ok(vec![0.001, 0.002, 0.003]));
+        assert_eq!(passes("4,4, 2"), Ok(vec![0.004, 0.004, 0.002]));
+        for (text, word) in [
+            ("0:2:1", "above 0 in mm"),
+            ("1,-1", "above 0 in mm"),
+            ("1,x", "\"x\""),
+            ("3:1:1", "from ≤ to"),
+        ] {
+            let error = passes(text).unwrap_err();
+            assert!(error.contains(word), "{text}: {error}");
+        }
     }
 
     // Verifies: CLI-010.

@@ -5,16 +5,16 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::CliError;
-use super::numbers::{at_least_0, length, position, velocity};
+use super::numbers::{List, at_least_0, passes, position, velocity};
 use palpate::simulation::Path;
 
 /// Where the probe is sent.
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct PathArguments {
-    /// Depths of the probe in mm, a pass for each in turn, there and back: a list such as 1,2,3,4
-    #[arg(long = "depths-mm", value_name = "LIST", value_parser = length, value_delimiter = ',', allow_hyphen_values = true, group = "way")]
-    depths: Vec<f64>,
+    /// Depths of the probe in mm, a pass for each in turn, there and back: a,b,c in any order or from:to:step
+    #[arg(long = "depths-mm", value_name = "LIST", value_parser = passes, allow_hyphen_values = true, group = "way")]
+    depths: Option<List>,
     /// Where a pass begins, in mm
     #[arg(long = "from-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "-8", requires = "depths")]
     from: f64,
@@ -39,15 +39,10 @@ impl PathArguments {
             let path = |text: &str, name: &str| Path::from_csv(text, name, self.rate_hz);
             return Ok(Some(palpate::file::read(file, path)?));
         }
-        if self.depths.is_empty() {
+        let Some(depths) = &self.depths else {
             return Ok(None);
-        }
+        };
         let ends = [self.from, self.to];
-        Ok(Some(Path::passes(
-            &self.depths,
-            ends,
-            self.speed,
-            self.rate_hz,
-        )?))
+        Ok(Some(Path::passes(depths, ends, self.speed, self.rate_hz)?))
     }
 }

@@ -61,14 +61,14 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let measured = measured.collect::<Result<_, _>>()?;
     let study = arguments.study.as_deref().map(StudyResults::read);
     let study = study.transpose()?;
+    let theories = match arguments.compare_theories {
+        true => theories::phantoms(&config, &phantoms)?,
+        false => Vec::new(),
+    };
     // The folder first: a run shall not fail at its end because it cannot be made.
     make_folder(&arguments.out)?;
     let (mut maps, deformed) = solve_all(&config, &phantoms)?;
-    let theories = if arguments.compare_theories {
-        theories::compare(&config, &phantoms)?
-    } else {
-        Vec::new()
-    };
+    let theories = theories::compare(&config, &theories)?;
     let reference = maps.remove(0);
     let (depth, _) = probe_depth(reference.table().depths());
     let changes = GelChanges::new(&reference, depth, &GelUncertainty::default());

@@ -20,6 +20,8 @@ use palpate::simulation::{Hand, Motion, Path, Sensor, Simulation, Tremor};
 /// The distance of the rows and columns of a phantom's map, and how much further than the path it reaches, m.
 const STEP: f64 = 0.5e-3;
 const MARGIN: f64 = 1e-3;
+/// Positions are the same within this part of [`STEP`].
+const SAME_STEP: f64 = 1e-6;
 
 /// Arguments of `palpate simulate`.
 #[derive(Debug, Args)]
@@ -157,6 +159,8 @@ fn write_all(
 }
 
 /// The forces of a phantom along a path and a little beyond.
+///
+/// Implements: CLI-231, CLI-232.
 fn map(name: &str, path: &Path) -> Result<ForceMap, CliError> {
     let phantom = phantom(name)?;
     let ([low, high], depth) = path.extent();
@@ -165,15 +169,45 @@ fn map(name: &str, path: &Path) -> Result<ForceMap, CliError> {
         let pose = phantom.check_pose(depth, lateral);
         pose.map_err(CliError::refused(format!("phantom {}", phantom.name())))?;
     }
-    let [first, last] = [(low - MARGIN) / STEP, (high + MARGIN) / STEP];
-    let axis = |first: f64, last: f64| -> Vec<f64> {
-        let entries = first.floor() as i32..=last.ceil() as i32;
-        entries.map(|k| STEP * f64::from(k)).collect()
-    };
-    let (depths, laterals) = (axis(0.0, (depth + MARGIN) / STEP), axis(first, last));
+    let [left, right, deepest] = with_margin(&phantom, [-low, high, depth]);
+    let (depths, laterals) = (axis(0.0, deepest), axis(-left, right));
     let model = Model::new(&phantom, MESH_SIZE, Contact::default());
     let map = model.and_then(|model| model.map(&depths, &laterals, &|_| ()));
     map.map_err(CliError::fem(phantom.name()))
+}
+
+/// How far a map reaches to the left, to the right and down, m: from the ends of a path to the next multiples of [`STEP`], up to the
+/// first that is `MARGIN` beyond, as long as the probe may stand there.
+///
+/// Implements: CLI-231.
+fn with_margin(phantom: &Phantom, path: [f64; 3]) -> [f64; 3] {
+    let may_stand = |[left, right, depth]: [f64; 3]| {
+        let stands = |lateral| phantom.check_pose(depth, lateral).is_ok();
+        stands(-left) && stands(right)
+    };
+    let mut reached = path;
+    // In turn, so that no way takes the room of the others.
+    for _ in 0..=(MARGIN / STEP) as u32 {
+        for way in 0..3 {
+            let mut farther = reached;
+            farther[way] = STEP * ((reached[way] / STEP + SAME_STEP).floor() + 1.0);
+            let is_margin = reached[way] < path[way] + MARGIN - STEP * SAME_STEP;
+            if is_margin && may_stand(farther) {
+                reached = farther;
+            }
+        }
+    }
+    reached
+}
+
+/// Two positions and the multiples of [`STEP`] between them, m.
+fn axis(first: f64, last: f64) -> Vec<f64> {
+    let between = (first / STEP + SAME_STEP).floor() as i32 + 1;
+    let between = between..(last / STEP - SAME_STEP).ceil() as i32;
+    let between = between.map(|k| STEP * f64::from(k));
+    let mut axis: Vec<f64> = [first].into_iter().chain(between).chain([last]).collect();
+    axis.dedup();
+    axis
 }
 
 impl MotionArguments {

@@ -7,13 +7,13 @@ use clap::{Args, ValueEnum};
 
 use super::CliError;
 use super::error::refuse;
-use super::numbers::{List, contact, friction, length, positions};
+use super::numbers::{List, contact, depths, friction, length, positions};
 use super::output::{print, warn, write};
 use super::progress::{bar, tell_large_mesh};
 use palpate::decimal::{format_scaled, mm};
 use palpate::fem::certify::certified_map;
 use palpate::fem::{Contact, MESH_SIZE, Model, Pose, PoseSolution, SMALL_STRAIN_LIMIT};
-use palpate::force_map::{ForceMap, SAME_POSITION, SmallestDet};
+use palpate::force_map::{ForceMap, Matrix, SAME_POSITION, SmallestDet};
 use palpate::phantom::{BUILTIN_NAMES, Phantom, Strain};
 
 /// Arguments of `palpate solve`.
@@ -25,7 +25,7 @@ pub struct SolveArguments {
     #[command(flatten)]
     theory: TheoryArguments,
     /// Depths of the probe in mm: a,b,c or from:to:step
-    #[arg(long = "depths-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
+    #[arg(long = "depths-mm", value_parser = depths, allow_hyphen_values = true, value_name = "LIST")]
     depths: List,
     /// Lateral positions of the probe in mm: a,b,c or from:to:step
     #[arg(long = "laterals-mm", value_parser = positions, allow_hyphen_values = true, value_name = "LIST")]
@@ -232,7 +232,7 @@ pub fn tell_large_strain(map: &ForceMap, phantom: &str) -> Result<(), CliError> 
     tell_large_strain_to(f64::INFINITY, map, phantom)
 }
 
-/// As [`tell_large_strain`], of the rows down to the depth `deepest`, m.
+/// As [`tell_large_strain`], down to the depth `deepest`, m.
 ///
 /// # Errors
 /// As [`tell_large_strain`].
@@ -243,11 +243,38 @@ pub fn tell_large_strain_to(deepest: f64, map: &ForceMap, phantom: &str) -> Resu
         return Ok(());
     };
     let table = map.table();
-    let is_asked = |depth: &f64| *depth <= deepest + SAME_POSITION;
-    let asked = &table.depths()[..table.depths().partition_point(is_asked)];
-    let smallest = SmallestDet::of(&certificate.min_det, asked, table.laterals());
+    let (min_det, depths) = down_to(deepest, &certificate.min_det, table.depths());
+    let smallest = SmallestDet::of(&min_det, &depths, table.laterals());
     let tell = |of| tell_smallest_det(of, certificate.law.is_none(), phantom);
     smallest.map_or(Ok(()), tell)
+}
+
+/// The rows of `min_det` down to the depth `deepest`, m, with one there, and their depths, m. The value there is linear between the
+/// rows around it, or between the gel at rest and the first row.
+///
+/// Implements: CLI-015.
+fn down_to(deepest: f64, min_det: &Matrix, depths: &[f64]) -> (Matrix, Vec<f64>) {
+    let count = depths.partition_point(|depth| *depth <= deepest + SAME_POSITION);
+    let mut asked = depths[..count].to_vec();
+    let above = asked.last().copied().unwrap_or(0.0);
+    let mut share = 0.0;
+    if let Some(below) = depths.get(count)
+        && deepest > above + SAME_POSITION
+    {
+        share = (deepest - above) / (below - above);
+        // To a nanometre, as it is told.
+        asked.push((1e9 * deepest).round() / 1e9);
+    }
+    let det = |row: usize, column: usize| {
+        if row < count {
+            return min_det.row(row)[column];
+        }
+        let before = row.checked_sub(1);
+        let before = before.map_or(1.0, |before| min_det.row(before)[column]);
+        (1.0 - share) * before + share * min_det.row(row)[column]
+    };
+    let min_det = Matrix::from_fn(asked.len(), min_det.column_count(), det);
+    (min_det, asked)
 }
 
 fn tell_smallest_det(

@@ -22,19 +22,38 @@ const CHANGE: f64 = 2e-3;
 
 /// The phantoms, the reference first, under each theory.
 ///
+/// # Errors
+/// A phantom or a contact law that a theory does not have.
+///
 /// Implements: CLI-179.
-pub fn compare(config: &Config, phantoms: &[Phantom]) -> Result<Vec<Theory>, CliError> {
-    let theory = |(strain, friction): (Strain, f64)| {
+pub fn phantoms(config: &Config, phantoms: &[Phantom]) -> Result<Vec<Vec<Phantom>>, CliError> {
+    let under = |phantom: &Phantom, (strain, friction): (Strain, f64)| {
+        config.mesh.contact.check(strain)?;
+        phantom.changed(|parts| {
+            parts.strain = strain;
+            parts.probe.friction = friction;
+        })
+    };
+    let theory = |theory: (Strain, f64)| {
+        let (strain, friction) = theory;
         let of = |phantom: &Phantom| {
-            phantom.changed(|parts| {
-                parts.strain = strain;
-                parts.probe.friction = friction;
-            })
+            let place = format!(
+                "--compare-theories: at {strain} strain, friction {friction}, phantom {}",
+                phantom.name()
+            );
+            under(phantom, theory).map_err(CliError::refused(place))
         };
-        let phantoms = phantoms.iter().map(of).collect::<Result<Vec<_>, _>>()?;
-        solve(config, &phantoms)
+        phantoms.iter().map(of).collect()
     };
     THEORIES.into_iter().map(theory).collect()
+}
+
+/// What was found of the phantoms of each theory.
+///
+/// Implements: CLI-179.
+pub fn compare(config: &Config, theories: &[Vec<Phantom>]) -> Result<Vec<Theory>, CliError> {
+    let theory = |phantoms: &Vec<Phantom>| solve(config, phantoms);
+    theories.iter().map(theory).collect()
 }
 
 fn failed(phantom: &Phantom) -> impl Fn(FemError) -> CliError {
@@ -72,20 +91,21 @@ fn solve(config: &Config, phantoms: &[Phantom]) -> Result<Theory, CliError> {
     })
 }
 
-/// d ln F_n / d ln ν of the normal force at the probe depth and x = 0.
+/// d ln F_n / d ln ν of the normal force at the probe depth and x = 0; from below where no phantom has the larger ratios.
 ///
 /// Implements: REP-090.
 fn poisson_leverage(config: &Config, model: &Model) -> Result<f64, FemError> {
     let phantom = model.phantom();
     let (depth, _) = probe_depth(&config.depths);
     let lateral = 0.0;
-    let force = |factor: f64| {
-        let changed = phantom.changed(|parts| {
-            for material in parts.materials_mut() {
-                material.poisson_ratio *= factor;
-            }
-        })?;
-        let model = model.with_phantom(&changed)?;
+    let changed = |factor: f64| {
+        phantom.changed(|parts| {
+            let materials = parts.materials_mut();
+            materials.for_each(|of| of.poisson_ratio *= factor);
+        })
+    };
+    let force = |phantom: &Phantom| {
+        let model = model.with_phantom(phantom)?;
         Ok::<f64, FemError>(model.solve(Pose { depth, lateral })?.force.normal)
     };
     // Half of the way to ν = 0.5 at the most.
@@ -94,6 +114,12 @@ fn poisson_leverage(config: &Config, model: &Model) -> Result<f64, FemError> {
         .materials()
         .filter(|of| of.poisson_ratio > 0.0)
         .fold(CHANGE, most);
-    let [less, more] = [force(1.0 - change)?, force(1.0 + change)?];
-    Ok((more - less) / (more + less) / change)
+    let less = force(&changed(1.0 - change)?)?;
+    if let Ok(phantom) = changed(1.0 + change) {
+        let more = force(&phantom)?;
+        return Ok((more - less) / (more + less) / change);
+    }
+    let [own, least] = [force(phantom)?, force(&changed(1.0 - 2.0 * change)?)?];
+    // Of second order, as the difference of both sides.
+    Ok((3.0 * own - 4.0 * less + least) / (2.0 * change * own))
 }

@@ -103,12 +103,16 @@ const PAIRS: usize = 2 * 3;
 
 fn read(lines: &str) -> Result<Experiment, Refusal> {
     let mut experiment = Experiment::new(Setup {
-        schema_version: 1,
+        schema_version: 2,
         seed: 1,
         trials: 3,
         subject: "1".into(),
         condition: "FEM data".into(),
         inclusions: vec!["2.6".into(), "8.6".into()],
+        observer: "person".into(),
+        noise_sd: None,
+        seconds: 3,
+        maps_sha256: vec!["5c".into(), "d2".into(), "07".into()],
     })?;
     take_lines(lines.as_bytes(), Path::new(FILE), 1, |line| {
         experiment.take(line)

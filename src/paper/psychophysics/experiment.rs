@@ -2,7 +2,8 @@
 //! continues with the next pair:
 //!
 //! ```text
-//! {"schema":"palpate-experiment","schema_version":1,"seed":42,"trials":30,"subject":"1","condition":"FEM data","inclusions":["2.6","4.6"]}
+//! {"schema":"palpate-experiment","schema_version":2,"seed":42,"trials":30,"subject":"1","condition":"FEM data","inclusions":["2.6","4.6"],
+//!  "observer":"ideal","noise_sd_n":2.0,"seconds":3,"maps_sha256":["5c1…","d28…","07e…"]}
 //! {"right":true}
 //! {"right":false}
 //! ```
@@ -14,10 +15,10 @@ use super::counts::columns;
 use super::{Trial, plan};
 
 /// What an experiment is: the first line of its journal.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "schema", rename = "palpate-experiment")]
 pub struct Setup {
-    /// The version of this line and of those that follow.
+    /// The version of this line and of those that follow: 2.
     pub schema_version: u32,
     /// The seed of the plan.
     pub seed: u64,
@@ -29,6 +30,29 @@ pub struct Setup {
     pub condition: String,
     /// Names of the inclusions, as in Table 1: their depths in mm.
     pub inclusions: Vec<String>,
+    /// What kind of observer answers: "person" or "ideal".
+    pub observer: String,
+    /// The ideal observer's noise on each sample of each channel, N.
+    #[serde(rename = "noise_sd_n")]
+    pub noise_sd: Option<f64>,
+    /// How long each sample is played.
+    pub seconds: u64,
+    /// SHA-256 of the force map without an inclusion and of that of each inclusion, as palpate writes them in JSON.
+    pub maps_sha256: Vec<String>,
+}
+
+impl Setup {
+    /// Whether a table of counts may have these inclusions.
+    ///
+    /// # Errors
+    /// An inclusion whose name no table of counts may have, or that is there twice.
+    ///
+    /// Implements: PSY-004.
+    pub fn check_names(&self) -> Result<(), Refusal> {
+        let names = self.inclusions.iter();
+        columns(names.map(|name| ("inclusion".into(), name.as_str())))?;
+        Ok(())
+    }
 }
 
 /// The answer to one pair: a further line of the journal.
@@ -40,7 +64,7 @@ pub struct Answer {
 }
 
 /// An experiment and its answers so far.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
     setup: Setup,
     plan: Vec<Trial>,
@@ -51,12 +75,11 @@ impl Experiment {
     /// An experiment without answers.
     ///
     /// # Errors
-    /// An inclusion whose name no table of counts may have, or that is there twice.
+    /// As [`Setup::check_names`].
     ///
     /// Implements: PSY-004.
     pub fn new(setup: Setup) -> Result<Experiment, Refusal> {
-        let names = setup.inclusions.iter();
-        columns(names.map(|name| ("inclusion".into(), name.as_str())))?;
+        setup.check_names()?;
         Ok(Experiment {
             plan: plan(setup.seed, setup.inclusions.len(), setup.trials),
             setup,

@@ -2,12 +2,16 @@ use super::*;
 
 fn experiment(trials: usize) -> Experiment {
     Experiment::new(Setup {
-        schema_version: 1,
+        schema_version: 2,
         seed: 3,
         trials,
         subject: "1".into(),
         condition: "FEM data".into(),
         inclusions: ["2.6", "4.6", "6.6", "8.6"].map(String::from).into(),
+        observer: "ideal".into(),
+        noise_sd: Some(0.5),
+        seconds: 3,
+        maps_sha256: ["5c", "d2", "07", "1e", "33"].map(String::from).into(),
     })
     .unwrap()
 }
@@ -63,6 +67,6 @@ fn the_first_line_states_the_experiment() {
         line.starts_with("{\"schema\":\"palpate-experiment\","),
         "{line}"
     );
-    let rest = ",\"schema_version\":1,\"seed\":3,\"trials\":30,\"subject\":\"1\",\"condition\":\"FEM data\",\"inclusions\":[\"2.6\",\"4.6\",\"6.6\",\"8.6\"]}";
+    let rest = ",\"schema_version\":2,\"seed\":3,\"trials\":30,\"subject\":\"1\",\"condition\":\"FEM data\",\"inclusions\":[\"2.6\",\"4.6\",\"6.6\",\"8.6\"],\"observer\":\"ideal\",\"noise_sd_n\":0.5,\"seconds\":3,\"maps_sha256\":[\"5c\",\"d2\",\"07\",\"1e\",\"33\"]}";
     assert!(line.ends_with(rest), "{line}");
 }
