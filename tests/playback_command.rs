@@ -454,14 +454,20 @@ fn the_bridge_drops_the_force_of_a_loop_that_falls_silent() {
     }
 }
 
-/// Sent to the bridge and its child, as a terminal does, or to the bridge alone.
+/// Sent to the bridge and its child, as a terminal does, or to the bridge alone (which leaves Ctrl-C to palpate).
 // Verifies: CLI-066, HID-113.
 #[cfg(unix)]
 #[test]
 fn a_signal_ends_a_bridge_without_a_force() {
     let here = place("signals", &[("gel", 300.0, 0.0)]);
     let program = bridge(&here);
-    for (signal, group) in [("-INT", "-"), ("-HUP", "-"), ("-TERM", "")] {
+    for (signal, group) in [
+        ("-INT", "-"),
+        ("-HUP", "-"),
+        ("-HUP", ""),
+        ("-TERM", "-"),
+        ("-TERM", ""),
+    ] {
         let mut bridge = Command::new(&program);
         bridge.current_dir(here.at("")).arg(crate::program::PROGRAM);
         bridge.args("play --map gel --device pipe --seconds 60".split(' '));

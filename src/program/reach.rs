@@ -167,8 +167,7 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
         remedy: "give a path over them".into(),
         ..in_bank(refusal)
     };
-    let under = (bank.reference().table(), bank.depth());
-    sweep.expected(under.0, under.1).map_err(beyond)?;
+    sweep.expected(bank.base(), bank.depth()).map_err(beyond)?;
     let gamma_needed = plain.gamma()?;
     let beside_classes = match arguments.classes {
         true => beside_classes(&plain)?,
@@ -199,7 +198,10 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
 fn beside_classes(reach: &Reach<'_>) -> Result<Vec<BesideClasses>, CliError> {
     let (reference, uncertainty) = (reach.bank.reference(), GelUncertainty::default());
     let changes = match reach.sweep.depths() {
-        Some(_) => GelChanges::along(reference, &[reach.sweep], &uncertainty),
+        Some(_) => {
+            let passes = reach.passes();
+            GelChanges::along(reference, &passes.iter().collect::<Vec<_>>(), &uncertainty)
+        }
         None => GelChanges::new(reference, reach.bank.depth(), &uncertainty),
     };
     let name = reference.phantom().map_or("", Phantom::name);

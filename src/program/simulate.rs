@@ -21,7 +21,7 @@ use palpate::simulation::{Hand, Motion, Path, Sensor, Simulation, Tremor};
 const STEP: f64 = 0.5e-3;
 const MARGIN: f64 = 1e-3;
 /// Positions are the same within this part of [`STEP`].
-const SAME_STEP: f64 = 1e-6;
+const SAME_STEP: f64 = 3e-6;
 
 /// Arguments of `palpate simulate`.
 #[derive(Debug, Args)]

@@ -101,7 +101,8 @@ fn sweep(bank: &Bank, positions_mm: Option<Any>, depths_mm: Option<Any>) -> PyRe
 }
 
 fn beside_classes(bank: &Bank, reach: &Reach) -> PyResult<Vec<Vec<BesideClass>>> {
-    let changes = bank.changes_under(reach.sweep, &[reach.sweep])?;
+    let passes = reach.passes();
+    let changes = bank.changes_under(reach.sweep, &passes.iter().collect::<Vec<_>>())?;
     reach.beside_classes(changes.as_deref()).map_err(refused)
 }
 

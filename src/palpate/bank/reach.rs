@@ -103,8 +103,24 @@ impl Reach<'_> {
         Ok(rows.map(row).collect())
     }
 
+    /// The robust detector's question of a sweep in this noise.
+    fn question(&self) -> RobustQuestion<'_> {
+        RobustQuestion {
+            noise_sd: Some(self.noise_sd),
+            ..RobustQuestion::default()
+        }
+    }
+
+    /// The passes of the sweep that the robust detector judges.
+    ///
+    /// Implements: BNK-082, ROB-080.
+    pub fn passes(&self) -> Vec<Record> {
+        let question = self.question();
+        question.passes(self.sweep, self.bank.reference()).0
+    }
+
     /// γ beside each class of disturbance of the robust detector: for each diameter and modulus, in the order of [`Reach::reached`], the
-    /// classes, each with γ at each depth of the bank. `changes` are those of the bank's reference under the sweep.
+    /// classes, each with γ at each depth of the bank. `changes` are those of the bank's reference under the [passes](Reach::passes).
     ///
     /// # Errors
     /// Too few samples.
@@ -114,11 +130,7 @@ impl Reach<'_> {
         &self,
         changes: Option<&GelChanges>,
     ) -> Result<Vec<Vec<BesideClass>>, Refusal> {
-        let question = RobustQuestion {
-            noise_sd: Some(self.noise_sd),
-            ..RobustQuestion::default()
-        };
-        let (passes, _) = question.passes(self.sweep, self.bank.reference());
+        let passes = self.passes();
         let sweep = |record| RobustSweep {
             record,
             depth: self.bank.depth(),
@@ -129,7 +141,7 @@ impl Reach<'_> {
         // The first are those of the maps, by their number: without a prior each of them is possible.
         let signals = BankHypotheses::new(self.bank, None).signals(&sweeps)?;
         let without = self.bank.reference().table();
-        let detector = RobustDetector::new(question, without, &sweeps, &signals)?;
+        let detector = RobustDetector::new(self.question(), without, &sweeps, &signals)?;
         let row = |maps: Vec<usize>| {
             let gammas = maps.iter().map(|&map| detector.gammas(map, self.noise_sd));
             let by_depth: Vec<_> = gammas.collect();

@@ -107,7 +107,7 @@ pub struct Cycle {
 pub enum End {
     /// It was asked to.
     Asked,
-    /// The servo kernel found a fault; the force has been released.
+    /// The servo kernel found a fault; the force has been released, or is zero at once where the session was asked to end.
     Fault(Fault),
     /// The device failed.
     Device(DeviceError),

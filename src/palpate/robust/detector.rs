@@ -168,17 +168,22 @@ impl<'a> RobustDetector<'a> {
     ///
     /// Implements: ROB-001, ROB-002, ROB-007, ROB-011, ROB-081.
     fn cleaned(&self, records: &[Force<&[f64]>], answer: &mut RobustAnswer) -> Vec<Cleaned> {
-        let mut all = Vec::new();
         let pairs = self.sweeps.iter().zip(records);
-        let levels = pairs.map(|(sweep, forces)| sweep.level(&self.question, forces.normal));
-        let level = self.level(&levels.collect::<Vec<_>>());
-        for (sweep, forces) in self.sweeps.iter().zip(records) {
-            let in_air = sweep.in_air(&self.question, forces.normal);
-            answer.in_air.push(in_air);
-            let cleaned = match in_air {
-                [0, 0] => sweep.cleaned(&self.question, *forces, level),
-                _ => Err(Cause::InAir),
-            };
+        let (in_air, raw): (Vec<_>, Vec<_>) = pairs
+            .map(|(sweep, Force { normal, .. })| {
+                let in_air = sweep.in_air(&self.question, normal);
+                (in_air, sweep.level(&self.question, normal))
+            })
+            .unzip();
+        let mut each = self.each_cleaned(records, &in_air, self.level(&raw));
+        let levels: Vec<f64> = each.iter().flatten().map(|of| of.level).collect();
+        if levels.len() == each.len() && each.iter().flatten().any(|of| of.glitches > 0) {
+            // A glitch is no part of the level that stands for all.
+            each = self.each_cleaned(records, &in_air, self.level(&levels));
+        }
+        answer.in_air = in_air;
+        let mut all = Vec::new();
+        for (sweep, cleaned) in self.sweeps.iter().zip(each) {
             match cleaned {
                 Ok(cleaned) => {
                     let Force { lateral, normal } = cleaned
@@ -196,6 +201,22 @@ impl<'a> RobustDetector<'a> {
             }
         }
         all
+    }
+
+    /// Each record without its glitches, or why it cannot be judged: by its samples `in_air`, and by the level that stands for all.
+    fn each_cleaned(
+        &self,
+        records: &[Force<&[f64]>],
+        in_air: &[[usize; 2]],
+        level: f64,
+    ) -> Vec<Result<Cleaned, Cause>> {
+        let pairs = self.sweeps.iter().zip(records).zip(in_air);
+        pairs
+            .map(|((sweep, forces), in_air)| match in_air {
+                [0, 0] => sweep.cleaned(&self.question, *forces, level),
+                _ => Err(Cause::InAir),
+            })
+            .collect()
     }
 
     /// The level of the sweep with the largest forces, which stands for all: that of a light one hides behind its offset.

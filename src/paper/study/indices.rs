@@ -102,6 +102,11 @@ pub fn indices(rows: &[&[f64]], seed: u64) -> Option<Vec<Index>> {
 fn estimates(rows: &[&[f64]]) -> Option<Vec<[f64; 2]>> {
     let count = rows.len() as f64;
     let both = || rows.iter().flat_map(|row| &row[..2]);
+    // A mean is rounded, and what is left of equal values looks like variance.
+    let first = rows.first()?[0];
+    if both().all(|value| *value == first) {
+        return None;
+    }
     let mean = both().sum::<f64>() / (2.0 * count);
     let squares = both().map(|value| (value - mean) * (value - mean));
     let variance = squares.sum::<f64>() / (2.0 * count);

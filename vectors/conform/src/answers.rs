@@ -93,8 +93,7 @@ impl<'a> Answers<'a> {
                 Some(_) => {}
                 None if is_claimed => self.queue.push_back(index),
                 outcome => {
-                    let why = format!("the program does not claim {}", group.op);
-                    *outcome = Some(Outcome::Skipped(why));
+                    *outcome = Some(Outcome::Unclaimed(group.op.clone()));
                 }
             }
         }

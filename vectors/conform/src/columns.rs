@@ -185,14 +185,14 @@ fn answer(found: &BTreeMap<&str, Cells>, case: &Case) -> Value {
     }
 }
 
-/// A value, a list, or a list of lists. Rows and columns that do not count from 0, one by one, are no value: it is null.
+/// A value, a list, or a list of lists. Rows and columns that do not count from 0, one by one, are no value.
 fn value(cells: &Cells) -> Value {
     let mut list: Vec<Value> = Vec::new();
     for (&place, value) in cells {
         let value = value.clone();
         let count = list.len();
         match (place, list.last_mut()) {
-            ((None, None), _) if cells.len() > 1 => return Value::Null,
+            ((None, None), _) if cells.len() > 1 => return json!({}),
             ((None, None), _) if value == "[]" => return json!([]),
             ((None, _), _) => return value,
             ((Some(row), None), _) if row == count => list.push(value),
@@ -202,7 +202,7 @@ fn value(cells: &Cells) -> Value {
             {
                 last.push(value);
             }
-            _ => return Value::Null,
+            _ => return json!({}),
         }
     }
     Value::from(list)

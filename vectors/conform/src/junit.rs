@@ -58,6 +58,10 @@ fn totals(counts: &Counts, errors: &str) -> String {
 fn content(outcome: &Outcome, finding: Option<&Finding>) -> String {
     let (element, message) = match (outcome, finding) {
         (Outcome::Skipped(why), _) => ("skipped".into(), why.clone()),
+        (Outcome::Unclaimed(op), _) => {
+            let why = format!("the program does not claim {op}");
+            ("skipped".into(), why)
+        }
         (_, None) => return "/>".into(),
         (_, Some(finding)) => {
             let reason = finding.reason.clone();

@@ -18,9 +18,9 @@ pub enum Require {
     Right,
     /// No answer is wrong
     Acceptable,
-    /// No answer is wrong in mathematics or range
+    /// No answer is wrong in mathematics or range, and each that must hold values does
     Range,
-    /// No answer is wrong in mathematics
+    /// No answer is wrong in mathematics, and each that must hold values does, or is a refusal
     Mathematics,
 }
 

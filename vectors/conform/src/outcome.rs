@@ -88,8 +88,10 @@ pub enum Outcome {
     Acceptable(String),
     /// A wrong answer, or no answer.
     Wrong(Wrong),
-    /// Not asked, and why.
+    /// Left out on request, and why.
     Skipped(String),
+    /// Not asked, because the program does not claim its op, which is this.
+    Unclaimed(String),
 }
 
 impl Outcome {
@@ -98,7 +100,7 @@ impl Outcome {
         match self {
             Outcome::Right | Outcome::Acceptable(_) => true,
             Outcome::Wrong(wrong) => wrong.class == Class::Mathematics,
-            Outcome::Skipped(_) => false,
+            Outcome::Skipped(_) | Outcome::Unclaimed(_) => false,
         }
     }
 

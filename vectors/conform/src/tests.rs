@@ -377,13 +377,20 @@ fn a_program_without_a_value_that_was_judged_fails_whatever_is_required() {
 // Verifies: ORA-040, ORA-049.
 #[test]
 fn what_is_chosen_by_name_must_be_asked() {
-    let skipped = Outcome::Skipped("the program does not claim roc".into());
-    let outcomes = [vec![Outcome::Right; 3], vec![skipped; 3]].concat();
     let mut measure = Measure::exact();
-    let of = |measure: &Measure| verdict(&two_groups(), measure, outcomes.clone()).failure();
-    assert_eq!(of(&measure), None);
+    let of = |measure: &Measure, second: Outcome| {
+        let outcomes = [vec![Outcome::Right; 3], vec![second; 3]].concat();
+        verdict(&two_groups(), measure, outcomes).failure()
+    };
+    let [unclaimed, left_out] = [Outcome::Unclaimed, Outcome::Skipped].map(|of| of("roc".into()));
+    assert_eq!(of(&measure, unclaimed.clone()), None);
     measure.named = true;
-    assert!(of(&measure).unwrap().starts_with("roc not checked"));
+    assert!(
+        of(&measure, unclaimed)
+            .unwrap()
+            .starts_with("roc not checked")
+    );
+    assert_eq!(of(&measure, left_out), None);
 }
 
 // Verifies: ORA-047.
@@ -425,22 +432,27 @@ fn a_table_that_does_not_count_from_0_or_says_two_things_is_wrong() {
         let rows: Vec<String> = rows.iter().map(|row| format!("a-0,{row}")).collect();
         judge_table(&mut answers, &rows.join("\n")).unwrap();
         let (outcomes, notes) = answers.outcomes("");
-        (outcomes[0] == Outcome::Right, notes.len())
+        let class = match &outcomes[0] {
+            Outcome::Wrong(wrong) => wrong.class.name(),
+            _ => "right",
+        };
+        (class, notes.len())
     };
-    for (rows, is_right) in [
-        (&["a,0,,1", "a,1,,2"][..], true),
-        (&["a,1,,2", "a,0,,1"], true),
-        (&["a,1,,1", "a,2,,2"], false),
-        (&["a,0,,1", "a,2,,2"], false),
-        (&["a,0,0,1", "a,0,1,2"], false),
-        (&["a,,,1", "a,0,,1", "a,1,,2"], false),
-        (&["a,0,,1", "a,1,,2", "error,,,x"], false),
+    for (rows, class) in [
+        (&["a,0,,1", "a,1,,2"][..], "right"),
+        (&["a,1,,2", "a,0,,1"], "right"),
+        (&["a,1,,1", "a,2,,2"], "protocol"),
+        (&["a,0,,1", "a,2,,2"], "protocol"),
+        (&["a,,,1", "a,0,,1", "a,1,,2"], "protocol"),
+        (&["a,0,,1", "a,1,,2", "error,,,x"], "protocol"),
+        // A list in a list: of one entry instead of two.
+        (&["a,0,0,1", "a,0,1,2"], "mathematics"),
     ] {
-        assert_eq!(judged(rows), (is_right, 0), "{rows:?}");
+        assert_eq!(judged(rows), (class, 0), "{rows:?}");
     }
     // Of two rows for one place the first counts, and a note tells it.
-    assert_eq!(judged(&["a,0,,1", "a,1,,2", "a,1,,3"]), (true, 1));
-    assert_eq!(judged(&["a,0,,1", "a,1,,3", "a,1,,2"]), (false, 1));
+    assert_eq!(judged(&["a,0,,1", "a,1,,2", "a,1,,3"]), ("right", 1));
+    assert_eq!(judged(&["a,0,,1", "a,1,,3", "a,1,,2"]), ("mathematics", 1));
 }
 
 // Verifies: ORA-048, ORA-050.
@@ -505,7 +517,7 @@ fn a_wrong_answer_has_a_class() {
             Outcome::Right => "right",
             Outcome::Acceptable(_) => "acceptable",
             Outcome::Wrong(wrong) => wrong.class.name(),
-            Outcome::Skipped(_) => "skipped",
+            Outcome::Skipped(_) | Outcome::Unclaimed(_) => "skipped",
         };
         assert_eq!(found, kind, "{case} {answer}");
     }

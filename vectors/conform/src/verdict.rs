@@ -38,6 +38,9 @@ pub struct Verdict {
     pub passed: bool,
     /// The counts of each group.
     pub groups: Vec<GroupCounts>,
+    /// The ops of the groups that were not asked because the program does not claim them.
+    #[serde(skip)]
+    pub unclaimed: Vec<String>,
     /// The sums of the counts over the groups.
     #[serde(skip)]
     pub totals: Counts,
@@ -72,6 +75,7 @@ impl Verdict {
             measure: measure.clone(),
             passed: false,
             groups: Vec::new(),
+            unclaimed: Vec::new(),
             totals: Counts::default(),
             diagnosis: Vec::new(),
             findings: Vec::new(),
@@ -112,7 +116,7 @@ impl Verdict {
                     self.mended.extend(accepted.map(|_| case.id.clone()));
                     continue;
                 }
-                Outcome::Skipped(_) => {
+                Outcome::Skipped(_) | Outcome::Unclaimed(_) => {
                     counts.skipped += 1;
                     continue;
                 }
@@ -139,6 +143,10 @@ impl Verdict {
             counts.add(&finding);
             self.findings.push(finding);
         }
+        let is_unclaimed = |outcome: &Outcome| matches!(outcome, Outcome::Unclaimed(_));
+        if outcomes.iter().all(is_unclaimed) {
+            self.unclaimed.push(group.op.clone());
+        }
         self.diagnosis
             .extend(diagnose(group, outcomes, |index| !is_extreme(index)));
         self.totals += &counts;
@@ -155,21 +163,22 @@ impl Verdict {
     /// Implements: ORA-049.
     pub fn failure(&self) -> Option<String> {
         let has_op = |group: &&GroupCounts| !group.op.is_empty();
-        let (asked, unasked): (Vec<&GroupCounts>, Vec<&GroupCounts>) = self
-            .groups
-            .iter()
-            .filter(has_op)
-            .partition(|group| group.counts.checked() > 0);
+        let ops: Vec<&GroupCounts> = self.groups.iter().filter(has_op).collect();
         let Counts { failed, .. } = self.totals;
         let checked = self.totals.checked();
-        let ops: Vec<&str> = unasked.iter().map(|group| &group.op[..]).collect();
-        let ops = ops.join(", ");
-        if asked.is_empty() && (checked == 0 || !unasked.is_empty()) {
+        let is_nothing = match &ops[..] {
+            [] => checked == 0,
+            ops => ops.iter().all(|group| group.counts.checked() == 0),
+        };
+        if is_nothing {
+            let ops: Vec<&str> = ops.iter().map(|group| &group.op[..]).collect();
+            let ops = ops.join(", ");
             return Some(format!(
                 "nothing checked: none of the ops of these vectors was asked ({ops})"
             ));
         }
-        if self.measure.named && !unasked.is_empty() {
+        if self.measure.named && !self.unclaimed.is_empty() {
+            let ops = self.unclaimed.join(", ");
             return Some(format!(
                 "{ops} not checked: chosen by name, but the program does not claim it"
             ));

@@ -80,6 +80,7 @@ pub struct Equilibrium {
 }
 
 /// The gel between two of Newton's iterations.
+#[derive(Clone)]
 struct Trial {
     state: Vec<f64>,
     equations: Equations,
@@ -282,9 +283,13 @@ impl FiniteModel {
             if iteration > 0 && is_balanced && is_exact {
                 return Ok(self.accept(pose, trial, iteration).ok_or(iteration));
             }
-            match self.iterate(trial, pose)? {
-                Some(next) => trial = next,
-                None => return Ok(Err(iteration)),
+            let balanced = (iteration > 0 && is_balanced).then(|| trial.clone());
+            match (self.iterate(trial, pose)?, balanced) {
+                (Some(next), _) => trial = next,
+                (None, Some(last)) => {
+                    return Ok(self.accept(pose, last, iteration).ok_or(iteration));
+                }
+                (None, None) => return Ok(Err(iteration)),
             }
         }
         Ok(Err(MOST_ITERATIONS))

@@ -41,6 +41,7 @@ pub(super) struct System {
 }
 
 /// The state of all elements.
+#[derive(Clone)]
 pub(super) struct Equations {
     /// Stored energy, J.
     pub energy: f64,

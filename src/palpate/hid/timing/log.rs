@@ -30,8 +30,8 @@ const EXPECTED: &str = "one of duration_ns, _us, _ms, _s (how long each cycle to
 /// intervals count. Against `budget`.
 ///
 /// # Errors
-/// Text of neither form; numbers that are not finite, a duration below 0, a time stamp that is not above the one before; no cycle; with
-/// the line.
+/// Text of neither form; numbers that are not finite, a duration below 0, a time stamp that is not above the one before, or whose
+/// resolution decides; no cycle; with the line.
 ///
 /// Implements: CLI-173.
 pub fn judge_log(text: &str, budget: Budget) -> Result<Judged, Refusal> {
@@ -70,7 +70,7 @@ pub fn judge_log(text: &str, budget: Budget) -> Result<Judged, Refusal> {
 }
 
 /// Refuses an interval (s) that is so near the budget that the last place of its time stamps decides: an interval is kept to the
-/// nanosecond, but a Unix time has an `f64` only each 0.24 µs.
+/// nanosecond, but a Unix time has an `f64` only each 0.24 µs, one of two months each nanosecond.
 fn check_resolved(name: &str, begin: f64, end: f64, budget: &Budget) -> Result<(), Refusal> {
     let largest = begin.abs().max(end.abs());
     let spacing = largest.next_up() - largest;
@@ -79,7 +79,7 @@ fn check_resolved(name: &str, begin: f64, end: f64, budget: &Budget) -> Result<(
     let expected = format!(
         "resolved better than to {resolution:.2} µs, which decides whether the budget is kept: subtract the first time from all"
     );
-    Refusal::value(name, end, expected).when(spacing > 1e-9 && from_budget <= spacing)
+    Refusal::value(name, end, expected).when(spacing > 0.5e-9 && from_budget <= spacing)
 }
 
 fn duration(name: &str, line: usize, seconds: f64) -> Result<Duration, Refusal> {

@@ -72,8 +72,8 @@ fn the_resolution_and_the_stated_noise_are_the_least_noise() {
 }
 
 /// The standard deviation of the noise that is found in two passes with a tremor of 0.05 mm, at 2.1 and 4.2 mm, in noise of 0.005 N, by
-/// a sensor with an offset of the normal force, N.
-fn noise_of_a_tremor(bank: &Bank, is_zeroed: bool, offset: f64) -> [f64; 2] {
+/// a sensor with an offset of the normal force, N, and a glitch in the second, N.
+fn noise_of_a_tremor(bank: &Bank, is_zeroed: bool, offset: f64, glitch: f64) -> [f64; 2] {
     let there = positions(161);
     let back = there.iter().rev().skip(1);
     let over: Vec<f64> = there.iter().chain(back).copied().collect();
@@ -87,10 +87,9 @@ fn noise_of_a_tremor(bank: &Bank, is_zeroed: bool, offset: f64) -> [f64; 2] {
         let pairs = channel.iter().zip(noise(channel.len(), trial));
         pairs.map(|(force, n)| force + offset + 0.005 * n).collect()
     };
-    let (lateral, normal) = (
-        noisy(forces.lateral, 0.0, 0),
-        noisy(forces.normal, offset, 1),
-    );
+    let lateral = noisy(forces.lateral, 0.0, 0);
+    let mut normal = noisy(forces.normal, offset, 1);
+    normal[241] += glitch;
     let record = Record::along("path", &over, &depths, Force::new(&lateral, &normal)).unwrap();
     let question = RobustQuestion {
         is_zeroed,
@@ -99,7 +98,7 @@ fn noise_of_a_tremor(bank: &Bank, is_zeroed: bool, offset: f64) -> [f64; 2] {
     let (passes, _) = question.passes(&record, bank.reference());
     let sweeps: Vec<_> = passes.iter().map(|of| at_place(bank, of, None)).collect();
     let (answer, _) = question.locate(bank, None, &sweeps).unwrap();
-    assert_eq!(answer.glitches, [0, 0]);
+    assert_eq!(answer.glitches, [0, usize::from(glitch > 0.0)]);
     [0, 1].map(|pass| answer.noise_sd[pass].normal.unwrap())
 }
 
@@ -107,17 +106,21 @@ fn noise_of_a_tremor(bank: &Bank, is_zeroed: bool, offset: f64) -> [f64; 2] {
 #[test]
 fn a_tremor_is_no_noise_whatever_the_offset_of_the_sensor() {
     let bank = deep_bank();
-    let [light, heavy] = noise_of_a_tremor(&bank, false, 0.0);
+    let [light, heavy] = noise_of_a_tremor(&bank, false, 0.0, 0.0);
     // 160 samples less 16 modes: a standard deviation of 6 %.
     assert_near(light, 0.005, 0.001);
     assert_near(heavy, 0.005, 0.001);
     // A sensor that was set to zero on the gel has any offset, and the level 1.
-    let zeroed = noise_of_a_tremor(&bank, true, -0.5);
+    let zeroed = noise_of_a_tremor(&bank, true, -0.5, 0.0);
     assert_near(zeroed[0] / light, 1.0, 0.05);
     assert_near(zeroed[1] / heavy, 1.0, 0.05);
     // The offset is half of the force of the light pass, and a fifth of that of the other, whose level stands for both.
-    let [offset, _] = noise_of_a_tremor(&bank, false, 0.3);
+    let [offset, _] = noise_of_a_tremor(&bank, false, 0.3, 0.0);
     assert_near(offset / light, 1.0, 0.2);
+    // A glitch of the heavy pass is not in the level that stands for both.
+    let glitch = noise_of_a_tremor(&bank, false, 0.0, 1000.0);
+    assert_near(glitch[0] / light, 1.0, 0.01);
+    assert_near(glitch[1] / heavy, 1.0, 0.02);
 }
 
 // Verifies: ROB-007, TRC-017, TRC-085.

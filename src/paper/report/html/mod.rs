@@ -128,10 +128,13 @@ impl Page<'_> {
         fates.into_iter().filter_map(sentence).collect()
     }
 
-    /// The band of the force without inclusion at x = 0; only for the paper's reference.
+    /// The band of the force without inclusion at x = 0; only for the paper's reference at the paper's depth.
+    ///
+    /// Implements: REP-083.
     fn level(&self, study: &StudyResults) -> Option<Band> {
         let reference = &study.plan.reference;
-        if paper::name_of(reference) != Some("none") {
+        let is_paper_depth = self.found.probe_depth_note.is_none();
+        if !is_paper_depth || paper::name_of(reference) != Some("none") {
             return None;
         }
         let force = Kind::NormalForceN { lateral_m: 0.0 };
