@@ -227,6 +227,16 @@ fn a_blank_sweep_tells_the_noise() {
     }
     assert_eq!(found["noise"], "blank.csv");
     assert!(found["chi_square_limits"].is_array());
+    // That of the record is tested all the same: here it holds each sample for four.
+    let held = place().read("with.csv");
+    let held = held.lines().enumerate().map(|(line, row)| {
+        let times = if line < 2 { 1 } else { 4 };
+        format!("{row}\n").repeat(times)
+    });
+    place().write("held.csv", held.collect::<String>());
+    let (found, _, code) = asked(&format!("held.csv {MAPS} --depth-mm 3 --noise blank.csv"));
+    assert!(number(&found, "whiteness") < 1e-6, "{found}");
+    assert_eq!((&found["causes"][0], code), (&json!("coloured"), Some(3)));
 }
 
 // Verifies: CLI-042, CLI-043.

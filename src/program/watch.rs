@@ -80,21 +80,7 @@ struct Line<'a> {
 /// Implements: CLI-183, CLI-184, CLI-233.
 pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
     let bank = Bank::read(&arguments.bank)?;
-    let prior = arguments.prior.as_ref();
-    let Some(noise_sd) = arguments.noise_sd.get() else {
-        refuse!(
-            "the noise cannot be estimated while a sweep is taken; give --noise-sd-n, or one for each force"
-        );
-    };
-    let unknown = arguments.known.unknown.iter().copied();
-    let question = WatchQuestion {
-        unknown: unknown.filter(|of| *of != Unknown::Variance).collect(),
-        noise_sd,
-        is_zeroed: arguments.zeroed,
-        prior_h1: arguments.prior_h1,
-        prior: prior.map(|file| bank.read_prior(file)).transpose()?,
-        test: Wald::new(arguments.max_false_alarm, arguments.max_miss).map_err(refused)?,
-    };
+    let question = question(arguments, &bank)?;
     let mut watcher = Watcher::new(&bank, &question)?;
     let mut samples = LiveSamples::new("-", arguments.layout.get()?);
     let (mut answer, mut written) = (None, None::<(Instant, Option<Decision>)>);
@@ -132,6 +118,25 @@ pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
         true => Err(CliError::Unjudged(why_undecided(&answer))),
         false => Ok(()),
     }
+}
+
+/// What is known of the sweep, and what is asked.
+fn question(arguments: &WatchArguments, bank: &Bank) -> Result<WatchQuestion, CliError> {
+    let prior = arguments.prior.as_ref();
+    let Some(noise_sd) = arguments.noise_sd.get() else {
+        refuse!(
+            "the noise cannot be estimated while a sweep is taken; give --noise-sd-n, or one for each force"
+        );
+    };
+    let unknown = arguments.known.unknown.iter().copied();
+    Ok(WatchQuestion {
+        unknown: unknown.filter(|of| *of != Unknown::Variance).collect(),
+        noise_sd,
+        is_zeroed: arguments.zeroed,
+        prior_h1: arguments.prior_h1,
+        prior: prior.map(|file| bank.read_prior(file)).transpose()?,
+        test: Wald::new(arguments.max_false_alarm, arguments.max_miss).map_err(refused)?,
+    })
 }
 
 /// Implements: CLI-184.

@@ -43,7 +43,9 @@ pub use rates::{
     CONFIDENCE, CalibratedThreshold, RareRate, false_alarm_bound, false_alarm_threshold,
 };
 pub use reach::{BesideClass, Reach, Reached, deepest, smallest_diameters};
-pub use watch::{LikeliestPlace, Told, WatchAnswer, WatchQuestion, WatchedPlace, Watcher};
+pub use watch::{
+    LikeliestPlace, SampleCounts, Told, WatchAnswer, WatchQuestion, WatchedPlace, Watcher,
+};
 
 use crate::decimal::mm;
 use crate::force_map::{ForceMap, ForceTable, SAME_POSITION, check_gel, increasing};

@@ -10,7 +10,7 @@ use crate::force::Force;
 use crate::force_map::{ForceTable, Place, Stencil, increasing};
 use crate::refusal::Refusal;
 use crate::stats::error::{check_positive, check_probability, check_samples, in_range};
-use crate::trace::contact::LEAST_LEVEL;
+use crate::trace::contact::wrong_level;
 use crate::trace::design::{self, depth_slope, difference, single_depth, slope, stacked};
 use crate::trace::{Cause, Record, Unknown, refused};
 
@@ -56,12 +56,23 @@ pub struct Watcher {
     /// The same at the sample at hand.
     at_sample: Vec<f64>,
     pub(super) found: Sequential<Vec<f64>>,
-    samples: usize,
-    missing: usize,
-    outside: usize,
+    counts: SampleCounts,
     /// Σ F f and Σ f² of the normal forces over the noise.
     contact: [f64; 2],
     answered: Option<(Decision, usize)>,
+}
+
+/// How many samples were pushed.
+///
+/// Implements: SEQ-024.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct SampleCounts {
+    /// Samples that count.
+    pub samples: usize,
+    /// Samples with a missing number.
+    pub missing: usize,
+    /// Samples outside the bank's lateral positions or depths.
+    pub outside: usize,
 }
 
 /// What the samples so far say. Serialised, it is an answer of `palpate watch`.
@@ -69,12 +80,9 @@ pub struct Watcher {
 /// Implements: SEQ-022, SEQ-024.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WatchAnswer {
-    /// Samples that count.
-    pub samples: usize,
-    /// Samples with a missing number.
-    pub missing: usize,
-    /// Samples outside the bank's lateral positions or depths.
-    pub outside: usize,
+    /// How many samples count, and how many do not.
+    #[serde(flatten)]
+    pub counts: SampleCounts,
     /// Pr(H = 1 | samples), by the mixture.
     pub posterior_h1: f64,
     /// ln of the likelihood ratio of an inclusion at any point.
@@ -180,9 +188,7 @@ impl Watcher {
             depths: bank.probe_depths().to_vec(),
             expected,
             found: found.map_err(refused)?,
-            samples: 0,
-            missing: 0,
-            outside: 0,
+            counts: SampleCounts::default(),
             contact: [0.0; 2],
             answered: None,
         })
@@ -233,12 +239,12 @@ impl Watcher {
         let needed = "given with each sample, as the bank has several depths of the probe";
         in_range(is_known, "depth", f64::NAN, needed)?;
         if numbers.iter().any(|number| number.is_nan()) {
-            self.missing += 1;
+            self.counts.missing += 1;
             return Ok(());
         }
         let rows = Stencil::of_rows(&self.depths, depth.unwrap_or(self.depths[0]));
         let Some(at) = Place::within(self.reference.laterals(), x).zip(rows) else {
-            self.outside += 1;
+            self.counts.outside += 1;
             return Ok(());
         };
         let own = depth.map_or(Ok(Vec::new()), |depth| self.without(x, depth))?;
@@ -248,7 +254,7 @@ impl Watcher {
         self.push_row(&at, &own, 1, normal)?;
         self.contact[0] += normal * self.at_sample[0];
         self.contact[1] += self.at_sample[0] * self.at_sample[0];
-        self.samples += 1;
+        self.counts.samples += 1;
         self.judge()
     }
 
@@ -297,7 +303,7 @@ impl Watcher {
         for &unknown in &self.question.unknown {
             let (at, value) = match unknown {
                 Unknown::Offset => (channel, unit),
-                Unknown::Drift => (channel, unit * self.samples as f64),
+                Unknown::Drift => (channel, unit * self.counts.samples as f64),
                 Unknown::Gain => (0, expected[0]),
                 Unknown::Depth | Unknown::Variance => (0, expected[expected.len() - 1]),
             };
@@ -327,7 +333,7 @@ impl Watcher {
             let is_none = possible.all(|(_, of)| self.is_excluded(of));
             is_none.then_some(Decision::NoInclusion)
         };
-        self.answered = answer.map(|answer| (answer, self.samples));
+        self.answered = answer.map(|answer| (answer, self.counts.samples));
         Ok(())
     }
 
@@ -366,7 +372,11 @@ impl Watcher {
     /// Implements: SEQ-023.
     fn causes(&self, likeliest: Option<(usize, Evidence)>) -> impl Iterator<Item = Cause> + use<> {
         let [cross, squares] = self.contact;
-        let is_in_air = !self.question.is_zeroed && cross.abs() < LEAST_LEVEL * squares;
+        // Another gel than that of the bank is a gain.
+        let level = (!self.question.is_zeroed && squares > 0.0)
+            .then(|| wrong_level(cross / squares))
+            .flatten()
+            .filter(|&of| of != Cause::Level);
         let told = likeliest.map_or(0.0, |(_, of)| of.along * of.along / of.gamma_squared);
         let degrees =
             self.found.rows() as f64 - self.found.rank() as f64 - f64::from(likeliest.is_some());
@@ -378,14 +388,9 @@ impl Watcher {
             && !is_misfit
             && self.answered.is_none()
             && self.possible().all(|(_, of)| self.is_excluded(of));
-        let causes = [
-            (is_in_air, Cause::NoContact),
-            (is_misfit, Cause::Misfit),
-            (is_silent, Cause::Zeroed),
-        ];
-        causes
-            .into_iter()
-            .filter_map(|(is_so, cause)| is_so.then_some(cause))
+        let causes = [(is_misfit, Cause::Misfit), (is_silent, Cause::Zeroed)];
+        let causes = causes.into_iter().filter(|(is_so, _)| *is_so);
+        level.into_iter().chain(causes.map(|(_, cause)| cause))
     }
 
     /// ln of the likelihood ratio of an inclusion at any point.
@@ -429,9 +434,7 @@ impl Watcher {
             increasing(places.map(|of| of.position))
         };
         Ok(WatchAnswer {
-            samples: self.samples,
-            missing: self.missing,
-            outside: self.outside,
+            counts: self.counts,
             posterior_h1: posterior(theta, self.question.prior_h1)?,
             theta,
             decision: answered.map(|(decision, _)| decision),

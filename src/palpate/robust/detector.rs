@@ -62,8 +62,14 @@ impl<'a> RobustDetector<'a> {
             first.map_or(0, |first| 1 + first)
         };
         let places: Vec<usize> = sweeps.iter().map(place).collect();
-        let prepare = |sweep: &RobustSweep<'_>| prepared(&question, without, sweep);
-        let sweeps = sweeps.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
+        let prepare = |(sweep, place): (&RobustSweep<'_>, &usize)| {
+            let of_place = sweeps.iter().zip(&places).filter(|(_, of)| *of == place);
+            let extents = of_place.filter_map(|(sweep, _)| sweep.record.place());
+            let extent = extents.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
+            prepared(&question, without, sweep, extent)
+        };
+        let prepared = sweeps.iter().zip(&places).map(prepare);
+        let sweeps = prepared.collect::<Result<Vec<_>, _>>()?;
         let disturbances: Vec<_> = (sweeps.iter())
             .map(|sweep| Disturbances::new(&sweep.modes, &sweep.undisturbed))
             .collect();
@@ -168,24 +174,20 @@ impl<'a> RobustDetector<'a> {
     ///
     /// Implements: ROB-001, ROB-002, ROB-007, ROB-011, ROB-081.
     fn cleaned(&self, records: &[Force<&[f64]>], answer: &mut RobustAnswer) -> Vec<Cleaned> {
-        let pairs = self.sweeps.iter().zip(records);
-        let (in_air, raw): (Vec<_>, Vec<_>) = pairs
-            .map(|(sweep, Force { normal, .. })| {
-                let in_air = sweep.in_air(&self.question, normal);
-                (in_air, sweep.level(&self.question, normal))
-            })
-            .unzip();
-        let mut each = self.each_cleaned(records, &in_air, self.level(&raw));
+        let pairs = || self.sweeps.iter().zip(records);
+        let raw = pairs().map(|(sweep, record)| sweep.level(&self.question, record.normal));
+        let mut each = self.each_cleaned(records, self.level(&raw.collect::<Vec<_>>()));
         let levels: Vec<f64> = each.iter().flatten().map(|of| of.level).collect();
         if levels.len() == each.len() && each.iter().flatten().any(|of| of.glitches > 0) {
             // A glitch is no part of the level that stands for all.
-            each = self.each_cleaned(records, &in_air, self.level(&levels));
+            each = self.each_cleaned(records, self.level(&levels));
         }
-        answer.in_air = in_air;
         let mut all = Vec::new();
-        for (sweep, cleaned) in self.sweeps.iter().zip(each) {
+        for ((sweep, record), cleaned) in pairs().zip(each) {
+            let in_air = sweep.in_air(&self.question, record.normal, cleaned.as_ref().ok());
+            answer.in_air.push(in_air);
             match cleaned {
-                Ok(cleaned) => {
+                Ok(cleaned) if in_air == [0; 2] => {
                     let Force { lateral, normal } = cleaned
                         .noise
                         .as_ref()
@@ -196,26 +198,23 @@ impl<'a> RobustDetector<'a> {
                     answer.glitches.push(cleaned.glitches);
                     all.push(cleaned);
                 }
-                Err(cause) if answer.causes.contains(&cause) => {}
-                Err(cause) => answer.causes.push(cause),
+                other => {
+                    let cause = other.err().filter(|_| in_air == [0; 2]);
+                    let cause = cause.unwrap_or(Cause::InAir);
+                    if !answer.causes.contains(&cause) {
+                        answer.causes.push(cause);
+                    }
+                }
             }
         }
         all
     }
 
-    /// Each record without its glitches, or why it cannot be judged: by its samples `in_air`, and by the level that stands for all.
-    fn each_cleaned(
-        &self,
-        records: &[Force<&[f64]>],
-        in_air: &[[usize; 2]],
-        level: f64,
-    ) -> Vec<Result<Cleaned, Cause>> {
-        let pairs = self.sweeps.iter().zip(records).zip(in_air);
+    /// Each record without its glitches, or why it cannot be judged, by the level that stands for all.
+    fn each_cleaned(&self, records: &[Force<&[f64]>], level: f64) -> Vec<Result<Cleaned, Cause>> {
+        let pairs = self.sweeps.iter().zip(records);
         pairs
-            .map(|((sweep, forces), in_air)| match in_air {
-                [0, 0] => sweep.cleaned(&self.question, *forces, level),
-                _ => Err(Cause::InAir),
-            })
+            .map(|(sweep, forces)| sweep.cleaned(&self.question, *forces, level))
             .collect()
     }
 

@@ -107,10 +107,7 @@ pub fn evidence(
     let mut best = (f64::NEG_INFINITY, f64::INFINITY);
     for class in classes {
         let weight = libm::log(class.weight / whole);
-        let mut covariance = class.covariance.clone();
-        for (at, variance) in noise.iter().enumerate() {
-            covariance[(at, at)] += variance;
-        }
+        let covariance = &class.covariance + DMatrix::from_diagonal(noise);
         let none = Factor::new(covariance.clone(), record)?;
         let distance = none.white.norm_squared();
         let density = weight - 0.5 * distance - none.log_det;

@@ -89,6 +89,7 @@ pub fn prepared(
     question: &RobustQuestion<'_>,
     without: &ForceTable,
     sweep: &RobustSweep<'_>,
+    extent: Option<[f64; 2]>,
 ) -> Result<PreparedSweep, Refusal> {
     let record = sweep.record;
     let samples = record.positions().len();
@@ -103,7 +104,7 @@ pub fn prepared(
         format!("give at most {MOST_SAMPLES}, such as means of neighbours"),
     );
     many.in_file(record.file()).when(samples > MOST_SAMPLES)?;
-    let undisturbed = undisturbed(question, without, sweep)?;
+    let undisturbed = undisturbed(question, without, sweep, extent)?;
     let is_stated = question.noise_sd.is_some();
     let modes = Modes::new(record.positions(), undisturbed.radius, is_stated);
     let forces = modes.of(channels(&undisturbed.forces));
@@ -121,6 +122,7 @@ fn undisturbed(
     question: &RobustQuestion<'_>,
     without: &ForceTable,
     sweep: &RobustSweep<'_>,
+    extent: Option<[f64; 2]>,
 ) -> Result<Undisturbed, Refusal> {
     let (record, depth) = (sweep.record, sweep.depth);
     let radius = sweep.changes.map_or(RADIUS, |changes| changes.radius);
@@ -130,9 +132,10 @@ fn undisturbed(
         "the record may have several passes, at depths of their own",
         "give each of its passes as a sweep",
     );
-    let place = record
+    let own = record
         .place()
         .ok_or_else(|| several.in_file(record.file()))?;
+    let place = extent.unwrap_or(own);
     let samples = record.positions().len();
     let own_depths = record
         .depths()
@@ -192,6 +195,18 @@ fn least_variance(steps: Force<f64>, stated: Option<Force<f64>>) -> Force<f64> {
     steps.zip(stated).map(least)
 }
 
+/// The forces of a channel without glitches, with what uneven depths add; what was no glitch is as in the record, to the bit.
+fn restored(((mut forces, uneven), record): ((Vec<f64>, &[f64]), &[f64])) -> Vec<f64> {
+    for (at, force) in forces.iter_mut().enumerate() {
+        let uneven = uneven.get(at).copied().unwrap_or_default();
+        *force = match record.get(at) {
+            Some(own) if own - uneven == *force => *own,
+            _ => *force + uneven,
+        };
+    }
+    forces
+}
+
 /// The forces at the samples over those at the mean depth.
 fn share(forces: &[f64], even: &[f64]) -> Vec<f64> {
     let share = |(own, even): (&f64, &f64)| match own == even {
@@ -203,18 +218,32 @@ fn share(forces: &[f64], even: &[f64]) -> Vec<f64> {
 }
 
 impl PreparedSweep {
-    /// Samples of a record in air at the start and at the end of its file, but for so few as may be glitches.
+    /// Samples of a record in air at the start and at the end of its file, but for so few as may be glitches; none if there are none once
+    /// so few glitches are replaced, for a spike is no air.
     ///
     /// Implements: ROB-007.
-    pub fn in_air(&self, question: &RobustQuestion<'_>, normal: &[f64]) -> [usize; 2] {
+    pub fn in_air(
+        &self,
+        question: &RobustQuestion<'_>,
+        normal: &[f64],
+        cleaned: Option<&Cleaned>,
+    ) -> [usize; 2] {
         if question.is_zeroed {
             return [0; 2];
         }
-        let steps = normal.windows(2).map(|pair| pair[1] - pair[0]);
-        let of_steps = || steps.map(|step| 0.5 * step * step).sum::<f64>() / normal.len() as f64;
-        let stated = question.noise_sd.map(|sd| sd.normal * sd.normal);
         let expected = channels(&self.undisturbed.forces).normal;
-        let mut ends = in_air(normal, expected, stated.unwrap_or_else(of_steps));
+        let stated = question.noise_sd.map(|sd| sd.normal * sd.normal);
+        let ends = |normal: &[f64]| {
+            let steps = normal.windows(2).map(|pair| pair[1] - pair[0]);
+            let squares = steps.map(|step| 0.5 * step * step).sum::<f64>();
+            let variance = stated.unwrap_or(squares / normal.len() as f64);
+            in_air(normal, expected, variance)
+        };
+        let cleaned = cleaned.filter(|of| of.glitches <= gates::MOST_GLITCHES);
+        if cleaned.is_some_and(|of| ends(&of.forces.normal) == [0; 2]) {
+            return [0; 2];
+        }
+        let mut ends = ends(normal);
         if self.is_reversed {
             ends.reverse();
         }
@@ -244,18 +273,18 @@ impl PreparedSweep {
     pub fn cleaned(
         &self,
         question: &RobustQuestion<'_>,
-        forces: Force<&[f64]>,
+        record: Force<&[f64]>,
         level: f64,
     ) -> Result<Cleaned, Cause> {
         let modes = &self.modes;
         if is_narrow(modes.width, self.undisturbed.radius) {
             return Err(Cause::Narrow);
         }
-        let mut of_channels = forces.into_array().into_iter();
-        if gates::is_stuck(forces.normal) || of_channels.any(gates::is_saturated) {
+        let mut of_channels = record.into_array().into_iter();
+        if gates::is_stuck(record.normal) || of_channels.any(gates::is_saturated) {
             return Err(Cause::Saturated);
         }
-        let steps = forces.map(gates::step);
+        let steps = record.map(gates::step);
         let uneven = self.uneven(level);
         let least = least_variance(steps, question.noise_sd);
         let clean = |((channel, least), uneven): ((&[f64], f64), &[f64])| {
@@ -270,20 +299,17 @@ impl PreparedSweep {
                 gates::without_glitches(modes, &mut channel, least).ok_or(Cause::Glitches);
             Ok((channel, glitches?))
         };
-        let Force { lateral, normal } = forces.zip(least).zip(channels(&uneven)).map(clean);
+        let Force { lateral, normal } = record.zip(least).zip(channels(&uneven)).map(clean);
         let (lateral, normal) = (lateral?, normal?);
         let glitches = lateral.1 + normal.1;
-        let mut forces = Force::new(lateral.0, normal.0);
+        let forces = Force::new(lateral.0, normal.0);
         let white = |sd: f64| Spectrum::white(modes, sd * sd);
         let noise = match question.noise_sd {
             Some(sd) => sd.map(white),
             None => (forces.as_ref().zip(steps))
                 .map(|(channel, step)| modes.noise(channel, step, question.is_white)),
         };
-        let channels = forces.lateral.iter_mut().chain(&mut forces.normal);
-        channels
-            .zip(&uneven)
-            .for_each(|(force, uneven)| *force += uneven);
+        let forces = forces.zip(channels(&uneven)).zip(record).map(restored);
         Ok(Cleaned {
             level: self.level(question, &forces.normal),
             forces,

@@ -815,7 +815,7 @@ fn a_reference_sweep_tells_of_the_gel_and_a_light_one_of_the_surface() {
         changes: Some(&changes[number]),
         is_reference,
     };
-    let gamma = |sweeps: &[RobustSweep], class: &str| {
+    let detector = |sweeps: &[RobustSweep]| {
         let signal = |sweep: &RobustSweep| {
             let none = sweep.expected(none.table()).unwrap();
             sweep.signal(disc.table(), &none).unwrap()
@@ -826,9 +826,11 @@ fn a_reference_sweep_tells_of_the_gel_and_a_light_one_of_the_surface() {
             amplitude_sd: 0.4,
             prior: 1.0,
         };
-        let detector =
-            RobustDetector::new(RobustQuestion::default(), none.table(), sweeps, &[signal])
-                .unwrap();
+        let question = RobustQuestion::default();
+        RobustDetector::new(question, none.table(), sweeps, &[signal]).unwrap()
+    };
+    let gamma = |sweeps: &[RobustSweep], class: &str| {
+        let detector = detector(sweeps);
         let gammas = detector.gammas(0, Force::new(0.02, 0.02));
         gammas.iter().find(|(of, _)| of.name == class).unwrap().1
     };
@@ -844,6 +846,16 @@ fn a_reference_sweep_tells_of_the_gel_and_a_light_one_of_the_surface() {
         "{alone} {twice} {lifted}"
     );
     assert_near(other / alone, 1.0, 0.05);
+    // A sweep over half of the place has the surface of that half.
+    let half: Vec<f64> = positions(161)[40..121].to_vec();
+    let half = Record::new("half", &half, Force::new(&zeros[..81], &zeros[..81])).unwrap();
+    let shorter = RobustSweep {
+        record: &half,
+        ..sweep(0, false)
+    };
+    let [whole, half] =
+        [0, 1].map(|at| detector(&[one[0], shorter]).sweeps[at].undisturbed.clone());
+    assert_eq!((&whole.u[40..121], whole.half), (&half.u[..], half.half));
     let [alone, known] = [&one[..], &beside].map(|sweeps| gamma(sweeps, gel));
     assert!(known > 1.5 * alone, "{alone} {known}");
     // Sweeps of two reference files have a surface each, those of one file the same.
@@ -1158,5 +1170,32 @@ fn forces_whose_squares_overflow_are_refused() {
             let expected = format!("force = {force:?}, but must be at most 1e20 N in magnitude");
             assert_eq!(judged(channel, force).err(), Some(expected));
         }
+    }
+}
+
+// The sum of ROB-007 begins anew behind the spike, if that counts.
+// Verifies: ROB-002, ROB-007.
+#[test]
+fn a_spike_near_an_end_is_a_glitch_and_no_air() {
+    let bank = bank();
+    let over = positions(161);
+    let forces = bank.maps()[7].table().sweep(bank.depth(), &over).unwrap();
+    let noisy = |(channel, trial): (Vec<f64>, u64)| -> Vec<f64> {
+        let pairs = channel.iter().zip(noise(161, trial));
+        pairs.map(|(force, noise)| force + 0.05 * noise).collect()
+    };
+    let mut forces = forces.zip(Force::new(31, 32)).map(noisy);
+    forces.normal[10] = -20.0;
+    let record = Record::new("sweep", &over, forces.as_deref()).unwrap();
+    let sweep = at_place(&bank, &record, None);
+    for noise_sd in [None, Some(Force::new(0.05, 0.05))] {
+        let question = RobustQuestion {
+            noise_sd,
+            ..RobustQuestion::default()
+        };
+        let (detector, _) = question.bank_detector(&bank, None, &[sweep]).unwrap();
+        let answer = detector.judge(&[record.forces()]).unwrap();
+        let found = (answer.causes, answer.in_air, answer.glitches);
+        assert_eq!(found, (Vec::new(), vec![[0; 2]], vec![1]), "{noise_sd:?}");
     }
 }

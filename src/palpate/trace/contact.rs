@@ -3,12 +3,8 @@
 use super::cause::Cause;
 use crate::force_map::ForceMap;
 
-/// A record that touches has such a level at least.
-///
-/// Implements: ROB-003, TRC-016.
-pub const LEAST_LEVEL: f64 = 0.5;
 /// The level of a record of the gel: of computed gels 0.57 to 1.34, at finite strain up to 1.83.
-const LEVEL: [f64; 2] = [LEAST_LEVEL, 2.2];
+const LEVEL: [f64; 2] = [0.5, 2.2];
 /// From here on another unit is likelier than anything else.
 const UNIT: f64 = 30.0;
 /// Below this the sign is another.
@@ -61,7 +57,8 @@ pub fn wrong_level(level: f64) -> Option<Cause> {
 
 /// How many samples at the start and at the end are in air: those beside the part of the record that is likeliest in contact, in noise of
 /// this `variance`, N². There the force is L f, with the largest level L of four parts of the record, and beside it there is none.
-/// An end is not in air where that is not 10⁶ times as likely as contact, and none is where L f is below 0.5 N, in the mean.
+/// An end is not in air where that is not 10⁶ times as likely as contact, or where its L f is below 0.5 N in the mean, and none is where that
+/// of the record is.
 ///
 /// Implements: TRC-017.
 pub fn in_air(forces: &[f64], expected: &[f64], variance: f64) -> [usize; 2] {
@@ -88,10 +85,12 @@ pub fn in_air(forces: &[f64], expected: &[f64], variance: f64) -> [usize; 2] {
             (most, touching) = (sum, start..at + 1);
         }
     }
-    let ends = [&logs[..touching.start], &logs[touching.end..]];
-    ends.map(|end| match -end.iter().sum::<f64>() > IN_AIR * variance {
-        true => end.len(),
-        false => 0,
+    [0..touching.start, touching.end..samples].map(|end| {
+        let count = end.len();
+        let touch = level * expected[end.clone()].iter().sum::<f64>();
+        let is_light = touch < LIGHT * count as f64;
+        let is_in_air = !is_light && -logs[end].iter().sum::<f64>() > IN_AIR * variance;
+        if is_in_air { count } else { 0 }
     })
 }
 
@@ -143,6 +142,11 @@ mod tests {
             let forces: Vec<f64> = (0..401).map(force).collect();
             assert_eq!(in_air(&forces, &[0.6; 401], 0.04), [0, 0]);
         }
+        // Passes at depths that grow: an offset is as large as the force of the first.
+        let depth = |at: usize| if at < 161 { 0.24 } else { 1.48 };
+        let expected: Vec<f64> = (0..322).map(depth).collect();
+        let forces: Vec<f64> = expected.iter().map(|force| force - 0.2).collect();
+        assert_eq!(in_air(&forces, &expected, 0.01), [0, 0]);
         // A drift of 0.3 N is as large as the force.
         let drift: Vec<f64> = (0..401).map(|at| 0.3 * f64::from(at) / 400.0).collect();
         assert_eq!(in_air(&drift, &[0.2; 401], 1e-4), [0, 0]);

@@ -167,7 +167,8 @@ impl Noise {
                 let lengths = left.map(correlation_length);
                 Correlation::Known(lengths.lateral.max(lengths.normal))
             } else {
-                Correlation::None
+                // The record's own may be another.
+                Correlation::OfRecord
             };
             Ok(Noise {
                 sd: Some(sd),

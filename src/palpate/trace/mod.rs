@@ -437,6 +437,8 @@ impl Record {
         let [start, end] = [0, self.positions.len() - 1].map(|at| self.positions[at]);
         let is_reversed = self.is_reversed();
         let way = |x: &f64| if is_reversed { end - x } else { x - start };
+        // A step back at the start is jitter.
+        let way = |x: &f64| way(x).max(0.0);
         self.positions.iter().map(way).collect()
     }
 

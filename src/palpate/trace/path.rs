@@ -125,7 +125,7 @@ impl Record {
     }
 
     /// The first and the last position of the place that the record is of, m; none if it may have several passes.
-    pub(crate) fn place(&self) -> Option<[f64; 2]> {
+    pub fn place(&self) -> Option<[f64; 2]> {
         let own = [self.positions[0], self.positions[self.positions.len() - 1]];
         self.place.or(self.depths.is_empty().then_some(own))
     }

@@ -89,13 +89,7 @@ pub fn detect(asked: Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
             }
         }
     }
-    for (text, files) in notes {
-        let more = match files.len() - 1 {
-            0 => String::new(),
-            more => format!(" (and {more} more)"),
-        };
-        note(format!("{}{more}", files[0]), &text);
-    }
+    tell_notes(notes);
     let records = alike.values().flatten();
     let asked = &asked.with_gels(records.map(|(_, passes)| &passes[..]))?;
     let of = |passes: &[Record]| asked.detector(&asked.sweeps(passes));
@@ -120,7 +114,18 @@ pub fn detect(asked: Asked<'_>, traces: &[PathBuf]) -> Result<(), CliError> {
     tell(asked.arguments.format, answers.into_values().collect())
 }
 
-/// Where a pass has which forces, and which way it went, as numbers.
+/// Tells each note once, with the first of its files and the number of the others.
+fn tell_notes(notes: BTreeMap<String, Vec<String>>) {
+    for (text, files) in notes {
+        let more = match files.len() - 1 {
+            0 => String::new(),
+            more => format!(" (and {more} more)"),
+        };
+        note(format!("{}{more}", files[0]), &text);
+    }
+}
+
+/// Where a pass has which forces, which way it went and over which place, as numbers.
 fn path_of(pass: &Record) -> Vec<u64> {
     let positions = pass
         .positions()
@@ -129,7 +134,13 @@ fn path_of(pass: &Record) -> Vec<u64> {
     let numbers = positions.map(|x| x.to_bits());
     let lists = [pass.forces().lateral.len(), pass.positions().len()].map(|of| of as u64);
     let way = pass.travelled()[0].to_bits();
-    lists.into_iter().chain([way]).chain(numbers).collect()
+    let place = pass.place().into_iter().flatten().map(f64::to_bits);
+    lists
+        .into_iter()
+        .chain([way])
+        .chain(place)
+        .chain(numbers)
+        .collect()
 }
 
 /// What is said of a record by the detector of its path.

@@ -81,7 +81,11 @@ fn the_last_answer_is_that_of_the_whole_record() {
                             place.diameter_m,
                             place.youngs_modulus_pa,
                         ];
-                        assert_eq!((found.samples, place), (61, expected.point), "{unknown:?}");
+                        assert_eq!(
+                            (found.counts.samples, place),
+                            (61, expected.point),
+                            "{unknown:?}"
+                        );
                         assert!(
                             (found.theta - expected.theta_mixture).abs() < 1e-9,
                             "{unknown:?} {} {}",
@@ -257,15 +261,17 @@ fn samples_that_are_missing_or_outside_are_counted_and_change_nothing() {
         watched(&question, holed).answer().unwrap(),
         watched(&question, record).answer().unwrap(),
     );
-    assert_eq!((found.samples, found.missing, found.outside), (61, 3, 2));
+    let counts = |missing, outside| SampleCounts {
+        samples: 61,
+        missing,
+        outside,
+    };
     assert_eq!(
-        WatchAnswer {
-            missing: 0,
-            outside: 0,
-            ..found
-        },
-        expected
+        (found.counts, expected.counts),
+        (counts(3, 2), counts(0, 0))
     );
+    let counts = expected.counts;
+    assert_eq!(WatchAnswer { counts, ..found }, expected);
 }
 
 // Verifies: SEQ-023.
@@ -283,6 +289,22 @@ fn a_record_that_no_hypothesis_explains_is_not_answered() {
         (&[Cause::NoContact][..], None, 0)
     );
     assert_eq!((all.covered, all.open_positions_m.len()), (40, 5));
+    // The same sweep in the other sign, or in mN: the gain would take what is wrong, and nothing speaks for an inclusion.
+    for (factor, cause) in [(-1.0_f64, Cause::Sign), (1e3, Cause::ForceUnit)] {
+        let unknown = [Unknown::Offset, Unknown::Drift, Unknown::Gain];
+        let question = WatchQuestion {
+            noise_sd: Force::new(factor.abs() * SD, factor.abs() * SD),
+            ..self::question(&unknown)
+        };
+        let scaled = |&(x, lateral, normal): &Sample| {
+            (x, lateral.map(|force| factor * force), factor * normal)
+        };
+        let found = watched(&question, gel.iter().map(scaled)).answer().unwrap();
+        assert_eq!(
+            (found.causes.as_slice(), found.decision, found.excluded),
+            (&[cause][..], None, 0)
+        );
+    }
     let zeroed = WatchQuestion {
         is_zeroed: true,
         ..question.clone()
@@ -473,8 +495,8 @@ fn what_cannot_be_watched_is_refused() {
     let found = watcher.answer().unwrap();
     assert_eq!(
         (
-            found.samples,
-            found.missing,
+            found.counts.samples,
+            found.counts.missing,
             found.theta,
             found.posterior_h1
         ),
@@ -591,8 +613,9 @@ fn samples_at_depths_of_their_own_have_the_last_answer_of_the_whole_record() {
             let error = watcher.push(0.0, Some(0.0), 1.0).unwrap_err().to_string();
             assert!(error.contains("the bank has several depths"), "{error}");
             let after = watcher.answer().unwrap();
-            assert_eq!((after.outside, after.missing), (1, 1));
-            assert_eq!((after.theta, after.samples), (found.theta, found.samples));
+            assert_eq!((after.counts.outside, after.counts.missing), (1, 1));
+            let samples = [&after, &found].map(|of| of.counts.samples);
+            assert_eq!((after.theta, samples[0]), (found.theta, samples[1]));
         }
     }
 }

@@ -538,7 +538,8 @@ fn a_blank_sweep_tells_its_noise() {
     };
     let trace = blank(400, 1, 0.2);
     let found = Noise::of_blank(&trace).unwrap();
-    assert_eq!(found.correlation, Correlation::None);
+    // White here, and tested in the record.
+    assert_eq!(found.correlation, Correlation::OfRecord);
     let found = found.sd.unwrap();
     close(found.normal, sd(&trace, 1));
     close(found.lateral, sd(&trace, 2));
