@@ -114,6 +114,22 @@ fn a_path_that_turns_the_gel_inside_out_is_an_error_and_one_far_away_is_refused(
     assert_has(&refused, "phantom 2.6: depth_mm = 1000.0, but must be");
 }
 
+// Verifies: CLI-232.
+#[test]
+fn a_gel_with_the_friction_of_a_sweep_is_refused() {
+    let place = Place::new("simulate-friction");
+    let poses = "--depths-mm 0.5,1 --laterals-mm=-1,1 --mesh-mm 3 --format json";
+    let map = place.succeed(&format!(
+        "solve --phantom none --strain finite --friction 0.3 {poses}"
+    ));
+    place.write("rubs.json", map);
+    let told = place.refused("simulate --map rubs.json --depths-mm 1 --from-mm -1 --to-mm 1");
+    assert_has(
+        &told,
+        "phantom none|friction of a sweep to the right|--friction",
+    );
+}
+
 // Verifies: CLI-231, CLI-232.
 #[test]
 fn a_path_may_go_where_its_margin_may_not() {

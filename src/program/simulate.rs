@@ -108,7 +108,11 @@ pub fn simulate(arguments: &SimulateArguments) -> Result<(), CliError> {
         refuse!("give --depths-mm or --path");
     };
     let map = match (&arguments.map, &arguments.phantom) {
-        (Some(file), _) => ForceMap::read(file)?,
+        (Some(file), _) => {
+            let map = ForceMap::read(file)?;
+            map.phantom().map_or(Ok(()), check_elastic)?;
+            map
+        }
         (None, name) => map(name.as_deref().unwrap_or_default(), &path)?,
     };
     let (motion, sensor) = (&arguments.motion, &arguments.sensor);
@@ -163,6 +167,7 @@ fn write_all(
 /// Implements: CLI-231, CLI-232.
 fn map(name: &str, path: &Path) -> Result<ForceMap, CliError> {
     let phantom = phantom(name)?;
+    check_elastic(&phantom)?;
     let ([low, high], depth) = path.extent();
     // Before the poses are laid out: a place far away has billions of them on the way.
     for lateral in [low, high] {
@@ -174,6 +179,19 @@ fn map(name: &str, path: &Path) -> Result<ForceMap, CliError> {
     let model = Model::new(&phantom, MESH_SIZE, Contact::default());
     let map = model.and_then(|model| model.map(&depths, &laterals, &|_| ()));
     map.map_err(CliError::fem(phantom.name()))
+}
+
+/// Refuses a gel whose forces are those of a probe that slides to the right.
+///
+/// Implements: CLI-232.
+fn check_elastic(phantom: &Phantom) -> Result<(), CliError> {
+    if phantom.probe().friction != 0.0 {
+        refuse!(
+            "phantom {}: its forces have the friction of a sweep to the right; give a gel without probe.friction, and --friction",
+            phantom.name()
+        );
+    }
+    Ok(())
 }
 
 /// How far a map reaches to the left, to the right and down, m: from the ends of a path to the next multiples of [`STEP`], up to the

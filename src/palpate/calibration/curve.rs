@@ -110,8 +110,11 @@ impl Curve {
             let [_, most] = extremes(depths.iter().copied()).unwrap_or_default();
             let first = depths.first().copied().unwrap_or(most);
             let deep = most - WAY_BACK * (most - first);
-            let last = depths.iter().rposition(|depth| *depth >= deep);
-            let kept = last.map_or(0, |last| last + 1);
+            // The probe comes back for the first time, or not at all.
+            let deepest = depths.iter().position(|depth| *depth == most);
+            let deepest = deepest.unwrap_or_default();
+            let back = depths[deepest..].iter().position(|depth| *depth < deep);
+            let kept = back.map_or(all, |back| deepest + back);
             let found = format!("{kept} samples on the way into the gel");
             let few = Refusal::state(found, format!("give at least {LEAST_SAMPLES}"));
             few.when(kept < LEAST_SAMPLES)?;

@@ -47,6 +47,10 @@ impl Gel {
         asked: Indentation<'_>,
         deepest: f64,
     ) -> Result<Gel, FemError> {
+        let found =
+            "the phantom's probe rubs, and the forces of a map with friction are those of a sweep";
+        let rubs = Refusal::state(found, "leave out probe.friction");
+        rubs.when(phantom.probe().friction != 0.0)?;
         let ratio = libm::log(FIRST_DEPTH) / f64::from(DEPTHS - 1);
         let depth = |k: i32| deepest * libm::exp(ratio * f64::from(k));
         let depths: Vec<f64> = (0..DEPTHS).rev().map(depth).collect();

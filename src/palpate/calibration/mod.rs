@@ -373,7 +373,9 @@ impl<'a> Calibration<'a> {
         loop {
             // There is room for a contact that the gel's own law finds earlier.
             let gel = Gel::new(&phantom, asked, 1.05 * deepest + 5e-5);
-            if let (Err(FemError::NoConvergence { .. }), Some(before)) = (&gel, before) {
+            if let (Err(error), Some(before)) = (&gel, before)
+                && !matches!(error, FemError::OutOfMemory | FemError::Stopped)
+            {
                 // The steps led to moduli that no gel has.
                 return Ok(before.of_cause(CurveCause::Misfit));
             }
@@ -399,7 +401,10 @@ impl<'a> Calibration<'a> {
                 return Ok(found.of_cause(CurveCause::Misfit));
             }
             let factors: Vec<f64> = changes.iter().map(|change| libm::exp(*change)).collect();
-            phantom = stiffened(&phantom, asked.layers, &factors)?;
+            phantom = match stiffened(&phantom, asked.layers, &factors) {
+                Ok(phantom) => phantom,
+                Err(_) => return Ok(found.of_cause(CurveCause::Misfit)),
+            };
             before = Some(found);
         }
     }

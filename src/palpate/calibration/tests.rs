@@ -432,6 +432,23 @@ fn moduli_whose_steps_do_not_end_are_not_those_of_the_gel() {
     assert!(found.expected().is_some() && found.moduli(&[0]).unwrap().is_empty());
 }
 
+// Verifies: CAL-011.
+#[test]
+fn a_phantom_with_friction_is_refused() {
+    let phantom = Phantom::builtin("none").unwrap();
+    let curve = Rig::new(&phantom, 1e-3).curve(0.5, 0.01, 3);
+    let rubs = phantom.changed(|parts| {
+        parts.strain = Strain::Finite;
+        parts.probe.friction = 0.3;
+    });
+    let question = CalibrationQuestion {
+        gel: Some((&rubs.unwrap(), asked(&[], 2e-3))),
+        contact: None,
+    };
+    let error = calibrate(&curve, question).unwrap_err().to_string();
+    assert!(error.contains("leave out probe.friction"), "{error}");
+}
+
 // Verifies: CAL-001, CAL-002.
 #[test]
 fn curves_that_are_none_are_refused() {
@@ -460,6 +477,10 @@ fn curves_that_are_none_are_refused() {
     let further: Vec<f64> = there_and_back.iter().copied().chain(up).collect();
     let kept_of_further = Curve::new("c", None, &further, &further).unwrap();
     assert_eq!(kept_of_further.depths(), kept.depths());
+    // Nor is a second cycle used, though it goes as deep.
+    let again: Vec<f64> = [&there_and_back[..], &there_and_back[1..]].concat();
+    let kept_of_again = Curve::new("c", None, &again, &again).unwrap();
+    assert_eq!(kept_of_again.depths(), kept.depths());
     // With what the reader of the file has to say before it.
     let rows = there_and_back.iter().map(|x| format!("{x},{x},0\n"));
     let text = "depth_m,normal_force_n,note\n".to_string() + &rows.collect::<String>();

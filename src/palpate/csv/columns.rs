@@ -221,6 +221,8 @@ pub(super) struct Found {
     pub factor: f64,
     /// How it was found.
     pub by: By,
+    /// Whether the user stated its unit, which then counts.
+    pub has_stated_unit: bool,
 }
 
 /// How a column is found: by the first that finds one.
@@ -305,6 +307,7 @@ pub(super) fn find(header: &[&str], column: Column, layout: &Layout) -> Result<F
                     power,
                     factor: 1.0,
                     by,
+                    has_stated_unit: false,
                 })
             });
             match found.collect::<Vec<_>>()[..] {
@@ -388,6 +391,7 @@ impl Stated {
             power,
             factor: self.sign * by_whole.map_or(self.factor, |_| 1.0),
             by: named.map_or(By::Unitless, |_| By::Name),
+            has_stated_unit: self.unit.is_some(),
         })
     }
 }
@@ -441,6 +445,16 @@ mod tests {
             ("normal=-Raw [mN]*0.5[N]", 1.0),
         ] {
             let layout = format!("{layout},position=1");
+            assert_eq!(read(text, &layout), Ok([1e-3, force]), "{layout}");
+        }
+        // A row of units does not change a unit that is stated, nor has it to know that of a column with one.
+        let text = "pos,t,AI1,Load\nmm,s,V,N\n1,0.25,-2,-3\n";
+        for (layout, force) in [
+            ("normal=AI1*0.5[mN]", -1e-3),
+            ("normal=Load[mN]", -3e-3),
+            ("normal=Load", -3.0),
+        ] {
+            let layout = format!("{layout},position=pos");
             assert_eq!(read(text, &layout), Ok([1e-3, force]), "{layout}");
         }
         // Without a word the position counts, and of the forces the one with a name.

@@ -354,14 +354,21 @@ fn in_units<const N: usize>(
     columns: [Option<Column>; N],
     units: &[&str],
 ) -> Option<[Option<Found>; N]> {
-    for (found, column) in found
-        .iter_mut()
-        .flatten()
-        .zip(columns.into_iter().flatten())
-    {
-        *found = found.in_unit(column, units.get(found.place)?)?;
+    let mut has_unit = false;
+    let pairs = found.iter_mut().flatten();
+    for (found, column) in pairs.zip(columns.into_iter().flatten()) {
+        match found.in_unit(column, units.get(found.place)?) {
+            None if !found.has_stated_unit => return None,
+            None => {}
+            Some(other) => {
+                has_unit = true;
+                if !found.has_stated_unit {
+                    *found = other;
+                }
+            }
+        }
     }
-    Some(found)
+    has_unit.then_some(found)
 }
 
 /// The fields of a line, without the spaces and then the quotes around them. A separator between quotes is none.

@@ -95,13 +95,7 @@ impl StiffnessMatrix {
                 Geometry::Plane => rule.integrate(&positions, material),
                 Geometry::Axisymmetric => rule.integrate_revolved(&positions, material),
             };
-            let stiffness = stiffness.map_err(|jacobian| {
-                let [x, y] = positions[0].map(|x| x * 1e3);
-                let found = format!(
-                    "element {index} near x = {x:.3} mm, y = {y:.3} mm has the Jacobian {jacobian:e}: the mesh cannot follow this phantom; try a finer mesh"
-                );
-                Refusal::state(found, "")
-            })?;
+            let stiffness = stiffness.map_err(|jacobian| folded(index, positions[0], jacobian))?;
             let row_of = |k: usize| self.unknown[nodes[k / 2] as usize][k % 2];
             for k in 0..2 * nodes.len() {
                 let column = row_of(k);
@@ -202,6 +196,15 @@ impl<const L: usize, const B: usize> NullaryFnOnce for Residual<'_, L, B> {
         }
         relative
     }
+}
+
+/// The refusal of an element whose map from its parent is folded near (x, y), m.
+fn folded(element: usize, [x, y]: [f64; 2], jacobian: f64) -> Refusal {
+    let [x, y] = [x, y].map(|metres| metres * 1e3);
+    let found = format!(
+        "element {element} near x = {x:.3} mm, y = {y:.3} mm has the Jacobian {jacobian:e}: the mesh cannot follow this phantom; try a finer mesh"
+    );
+    Refusal::state(found, "")
 }
 
 /// The rows on and above the diagonal of each column: unknowns of nodes that share an element, where the nodes are eliminated in

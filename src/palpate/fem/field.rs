@@ -177,23 +177,7 @@ impl<'a> Checker<'a> {
         }
         let (u, _) = self.displacements.split_at_mut(unknowns);
         self.factor.extend_to_interior(u)?;
-        let balance = [0, 1].map(|direction| {
-            let mut balance = [[0.0; LANES]; BLOCKS];
-            let mut add = |scale: f64, row: &Row| {
-                for (sum, value) in (balance.as_flattened_mut().iter_mut()).zip(row.as_flattened())
-                {
-                    *sum += scale * value;
-                }
-            };
-            let held = u.iter().zip(&matrix.reaction[direction]);
-            for (u, &reaction) in held.filter(|(_, reaction)| **reaction != 0.0) {
-                add(reaction, u);
-            }
-            for unknown in matrix.surface.iter().skip(direction).step_by(2).flatten() {
-                add(1.0, &self.forces[*unknown]);
-            }
-            balance
-        });
+        let balance = [0, 1].map(|direction| balance(matrix, direction, u, &self.forces));
         let residual = matrix.residual(u, &mut self.forces, loaded);
         let min_det = Arch::new().dispatch(Smallest {
             samples: self.samples,
@@ -209,6 +193,24 @@ impl<'a> Checker<'a> {
         };
         Ok((0..poses.len()).map(check).collect())
     }
+}
+
+/// The sum along `direction`, N, of the loads of each field and of what the held nodes bear at the displacements `u`.
+fn balance(matrix: &StiffnessMatrix, direction: usize, u: &[Row], loads: &[Row]) -> Row {
+    let mut balance = [[0.0; LANES]; BLOCKS];
+    let mut add = |scale: f64, row: &Row| {
+        for (sum, value) in (balance.as_flattened_mut().iter_mut()).zip(row.as_flattened()) {
+            *sum += scale * value;
+        }
+    };
+    let held = u.iter().zip(&matrix.reaction[direction]);
+    for (u, &reaction) in held.filter(|(_, reaction)| **reaction != 0.0) {
+        add(reaction, u);
+    }
+    for unknown in matrix.surface.iter().skip(direction).step_by(2).flatten() {
+        add(1.0, &loads[*unknown]);
+    }
+    balance
 }
 
 /// The smallest det(I + ∇u) of each field, away from sharp corners.

@@ -180,8 +180,11 @@ impl Triangulation<'_> {
         if self.half && ellipse.centre[0] == 0.0 {
             // The cosine of π/2 is not 0 in binary.
             let on_axis = |t: f64| t == 0.0 || t == 1.0;
+            // Where it is furthest to the right: one of its diameters is level.
+            let [cos, sin] = ellipse.turn;
+            let right = -libm::atan2(sin, cos);
             self.line(Box::new(move |t| {
-                let point = at((t - 0.5) * PI);
+                let point = at(right + (t - 0.5) * PI);
                 Point::new(if on_axis(t) { 0.0 } else { point.x }, point.y)
             }));
         } else {

@@ -169,16 +169,12 @@ fn read(
     Ok((rows, has_lateral))
 }
 
-/// The table of `rows`, each with its line, of the normal force alone unless it `has_lateral` forces. There is exactly one for each pose of the grid, or an error.
-///
-/// The poses are compared one by one, never laid out: n rows can span n² of them.
-///
-/// Implements: MAP-033, MAP-037, MAP-002.
-fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>, has_lateral: bool) -> Result<ForceTable, Refusal> {
+/// Makes depths, and positions, that are closer to each other than two of an axis may be the same.
+fn unite(rows: &mut [(usize, [f64; 4])]) {
     for axis in [1, 0] {
         rows.sort_by(|(_, a), (_, b)| a[axis].total_cmp(&b[axis]));
         let mut last = f64::NEG_INFINITY;
-        for (_, row) in &mut rows {
+        for (_, row) in &mut *rows {
             if row[axis] - last > SAME_POSITION {
                 // Adding 0 makes −0 the same position as 0.
                 last = row[axis] + 0.0;
@@ -186,6 +182,15 @@ fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>, has_lateral: bool) -> Result<Forc
             row[axis] = last;
         }
     }
+}
+
+/// The table of `rows`, each with its line, of the normal force alone unless it `has_lateral` forces. There is exactly one for each pose of the grid, or an error.
+///
+/// The poses are compared one by one, never laid out: n rows can span n² of them.
+///
+/// Implements: MAP-033, MAP-037, MAP-002.
+fn on_a_grid(mut rows: Vec<(usize, [f64; 4])>, has_lateral: bool) -> Result<ForceTable, Refusal> {
+    unite(&mut rows);
     // The first line of a pose first.
     rows.sort_by(|(first, a), (second, b)| {
         let order = a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));

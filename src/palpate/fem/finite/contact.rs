@@ -114,6 +114,16 @@ impl Place {
     pub fn tangent(&self) -> Vector2<f64> {
         Vector2::new(-self.normal.y, self.normal.x)
     }
+
+    /// The parts of a force along the normal and along the tangent.
+    fn parts(&self, force: Vector2<f64>) -> [f64; 2] {
+        [force.dot(&self.normal), force.dot(&self.tangent())]
+    }
+}
+
+/// The force on a node, N.
+fn force_at(forces: &[f64], node: usize) -> Vector2<f64> {
+    Vector2::new(forces[2 * node], forces[2 * node + 1])
 }
 
 /// A displacement that the contact leaves free: of `node` along `along`, where the force along `balanced` vanishes.
@@ -196,17 +206,13 @@ impl Patch<'_> {
         iteration: usize,
     ) -> bool {
         let mu = self.friction.coefficient();
-        let of = |node: usize| {
-            let force = Vector2::new(forces[2 * node], forces[2 * node + 1]);
-            let place = &places[node];
-            (force.dot(&place.normal), force.dot(&place.tangent()))
-        };
+        let of = |node: usize| places[node].parts(force_at(forces, node));
         let touching = (0..touches.len()).filter(|&node| touches[node] != Touch::Apart);
-        let whole: f64 = touching.map(|node| of(node).0.max(0.0)).sum();
+        let whole: f64 = touching.map(|node| of(node)[0].max(0.0)).sum();
         let tolerance = FORCE_TOLERANCE * whole;
         // A change for each node that needs one, and how badly.
         let change = |node: usize| {
-            let (pressure, drag) = of(node);
+            let [pressure, drag] = of(node);
             let place = &places[node];
             let slid = place.arc - self.arcs[node];
             match touches[node] {
@@ -256,7 +262,6 @@ impl Patch<'_> {
     /// sticks, else such that the forces balance.
     fn newton(&self, touches: &[Touch], places: &[Place], forces: &[f64]) -> Option<Vec<f64>> {
         let mu = self.friction.coefficient();
-        let force = |node: usize| Vector2::new(forces[2 * node], forces[2 * node + 1]);
         let mut moves = vec![0.0; forces.len()];
         let mut unknowns = Vec::with_capacity(forces.len());
         for (node, (touch, place)) in touches.iter().zip(places).enumerate() {
@@ -278,7 +283,7 @@ impl Patch<'_> {
                     continue;
                 }
                 Touch::Slips(way) => {
-                    let (pressure, drag) = (force(node).dot(&normal), force(node).dot(&tangent));
+                    let [pressure, drag] = place.parts(force_at(forces, node));
                     let turning = (way * mu * drag - pressure) / place.distance;
                     free(tangent, tangent + way * mu * normal, turning);
                 }
@@ -293,21 +298,26 @@ impl Patch<'_> {
         let pushed = self.stiffness * Col::from_fn(moves.len(), |k| moves[k]);
         let rest = |unknown: &Unknown| {
             let k = 2 * unknown.node;
-            let force = force(unknown.node) + Vector2::new(pushed[k], pushed[k + 1]);
+            let force = force_at(forces, unknown.node) + Vector2::new(pushed[k], pushed[k + 1]);
             -unknown.balanced.dot(&force)
         };
         let rest = Col::from_iter(unknowns.iter().map(rest).collect::<Vec<_>>());
-        let matrix = self.between(&unknowns);
-        // Without friction the tangent is symmetric, and positive definite where the contact is stable.
-        let solved = match self.friction {
-            Friction::None => matrix.llt(Side::Lower).ok()?.solve(rest),
-            _ => matrix.partial_piv_lu().solve(rest),
-        };
-        for (unknown, amount) in unknowns.iter().zip(solved.iter()) {
+        let amounts = self.amounts(&unknowns, rest)?;
+        for (unknown, amount) in unknowns.iter().zip(amounts.iter()) {
             moves[2 * unknown.node] += amount * unknown.along.x;
             moves[2 * unknown.node + 1] += amount * unknown.along.y;
         }
         Some(moves)
+    }
+
+    /// How far, m, the free displacements go so that the forces `rest`, N, balance.
+    fn amounts(&self, unknowns: &[Unknown], rest: Col<f64>) -> Option<Col<f64>> {
+        let matrix = self.between(unknowns);
+        // Without friction the tangent is symmetric, and positive definite where the contact is stable.
+        Some(match self.friction {
+            Friction::None => matrix.llt(Side::Lower).ok()?.solve(rest),
+            _ => matrix.partial_piv_lu().solve(rest),
+        })
     }
 
     /// The stiffness over the free displacements, N/m.

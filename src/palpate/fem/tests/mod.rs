@@ -88,6 +88,11 @@ fn zoo() -> Vec<(String, Phantom)> {
             add(&(what + ", off centre"), with(vec![hard(-4.3, 4.1, shape)]));
         }
     }
+    let upright = ellipse(8.0, 3.2, 90.0);
+    add(
+        "ellipse turned by a right angle",
+        with(vec![hard(0.0, 3.0, upright)]),
+    );
     let square = polygon(&[[-2.0, 0.0], [2.0, 0.0], [2.0, 4.0], [-2.0, 4.0]]);
     let triangle = polygon(&[[-3.0, 0.0], [3.0, 0.0], [0.0, 5.0]]);
     let sharp = polygon(&[[0.0, 0.0], [6.0, 0.0], [0.0, 3.5]]);
