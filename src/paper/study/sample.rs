@@ -185,13 +185,7 @@ impl<'a> Sampler<'a> {
         settings.noise_sd_n = of_study(NOISE_SD, settings.noise_sd_n);
         let (mut maps, mut depths) = (Vec::new(), Vec::new());
         for (at, own) in self.plan.all_phantoms().enumerate() {
-            let solve = || {
-                let phantom = self.plan.changed(own, &values)?;
-                let model = Model::new(&phantom, mesh * self.plan.mesh_size, self.plan.contact)?;
-                let map = model.sweep(&[depth], &self.plan.laterals)?;
-                Ok((map, phantom.inclusion_depth()))
-            };
-            let solved: Result<_, FemError> = solve();
+            let solved = self.solved(own, &values, mesh * self.plan.mesh_size, depth);
             let of_phantom =
                 |error| Refusal::state(error, "").of_part(&format!("phantom {}", own.name()));
             let (map, inclusion) = solved.map_err(of_phantom)?;
@@ -220,6 +214,20 @@ impl<'a> Sampler<'a> {
             depths,
             p_values,
         })
+    }
+
+    /// The sweep at `depth` (m) over a phantom with the values of the inputs, on a mesh of a size (m), and how deep its inclusion lies (m).
+    fn solved(
+        &self,
+        phantom: &Phantom,
+        values: &[f64],
+        mesh_size: f64,
+        depth: f64,
+    ) -> Result<(ForceMap, Option<f64>), FemError> {
+        let phantom = self.plan.changed(phantom, values)?;
+        let model = Model::new(&phantom, mesh_size, self.plan.contact)?;
+        let map = model.sweep(&[depth], &self.plan.laterals)?;
+        Ok((map, phantom.inclusion_depth()))
     }
 }
 
@@ -271,13 +279,17 @@ impl Computed {
     }
 }
 
-/// The phantoms whose names are columns of the paper's Table 1: their places and names.
+/// Lateral positions at which the peak of a signal differs from its mean, also of a symmetric one.
+const LEAST_POSITIONS: usize = 3;
+
+/// The phantoms whose names are columns of the paper's Table 1, if each convention has a signal over the sweep: their places and names.
 ///
 /// Implements: STU-031.
 fn compared<'a>(plan: &'a StudyPlan, answers: &AnswerTable) -> Vec<(usize, &'a str)> {
     let phantoms = plan.phantoms.iter().enumerate();
     let is_column = |name: &str| answers.inclusions().iter().any(|of| of.name == name);
-    let compared = phantoms.filter(|(_, phantom)| is_column(phantom.name()));
+    let is_sweep = plan.laterals.len() >= LEAST_POSITIONS;
+    let compared = phantoms.filter(|(_, phantom)| is_sweep && is_column(phantom.name()));
     compared.map(|(at, phantom)| (at, phantom.name())).collect()
 }
 

@@ -355,6 +355,20 @@ fn slopes_are_those_of_another_program() {
     assert!(holds, "{band}");
 }
 
+// The peak of a signal at one position is its mean, so that no subject could have felt the one less the other.
+// Verifies: STU-031.
+#[test]
+fn a_study_over_one_position_explains_no_answers() {
+    let mut plan = plan(vec![near("E", "layer[1].youngs_modulus_kpa", 4.0)]);
+    plan.phantoms = ["4.6", "6.6"]
+        .map(|name| Phantom::builtin(name).unwrap())
+        .into();
+    (plan.laterals, plan.mesh_size) = (vec![0.0], 2e-3);
+    let sampler = Sampler::new(&plan).unwrap();
+    let found = sampler.sample(0).unwrap();
+    assert_eq!(found.len(), sampler.quantities().len());
+}
+
 // Verifies: STU-021, STU-030.
 #[test]
 fn the_medians_are_solved_on_three_meshes() {

@@ -4,7 +4,7 @@ use super::gamma;
 use super::people::DEPTH;
 use super::plan::{Picture, Plan, Words};
 use crate::report::text::{fixed, joined, millimetres, trimmed};
-use crate::report::{Findings, Run, Topic, maps::incomparable};
+use crate::report::{Findings, MapFindings, Run, Topic, maps::incomparable};
 use palpate::chart::Panel;
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, Hypotheses};
@@ -32,35 +32,32 @@ const LONGER: f64 = 2.0;
 /// γ beside each of [`SHOWN`].
 type Gammas = [f64; SHOWN.len()];
 
-/// The figure, if the top of an inclusion and what is uncertain of the gel are known.
-///
-/// # Errors
-/// A map does not fit the reference.
+/// The figure, if what is uncertain of the gel is known, and the top of an inclusion that has a signal.
 ///
 /// Implements: REP-035.
-pub fn figure(run: &Run, found: &Findings) -> Result<Option<Plan>, Refusal> {
-    let pairs = run.maps.iter().zip(&found.maps);
-    let pairs = pairs.filter_map(|(map, of)| Some((1e3 * of.inclusion_depth_m?, map)));
-    let mut maps: Vec<_> = pairs.collect();
-    maps.sort_by(|a, b| a.0.total_cmp(&b.0));
+pub fn figure(run: &Run, found: &Findings) -> Option<Plan> {
     let laterals = run.reference.table().laterals();
     let longest = 2e3 * f64::min(-laterals[0], laterals[laterals.len() - 1]);
-    if maps.is_empty() || run.changes.is_none() || longest < SHORTEST {
-        return Ok(None);
+    if run.changes.is_none() || longest < SHORTEST {
+        return None;
     }
-    let of = |map: &ForceMap, length: f64| gammas(run, map, found.probe_depth_m, length);
-    let by_depth: Result<Vec<_>, Refusal> = maps
-        .iter()
-        .map(|(depth, map)| Ok((*depth, of(map, longest)?)))
-        .collect();
+    let of = |map: &ForceMap, length: f64| gammas(run, map, found.probe_depth_m, length).ok();
+    let pairs = run.maps.iter().zip(&found.maps);
+    let known = |(map, found): (_, &MapFindings)| {
+        let depth = 1e3 * found.inclusion_depth_m?;
+        Some((map, (depth, of(map, longest)?)))
+    };
+    let mut known: Vec<_> = pairs.filter_map(known).collect();
+    known.sort_by(|(_, a), (_, b)| a.0.total_cmp(&b.0));
+    let (maps, by_depth): (Vec<&ForceMap>, Vec<(f64, Gammas)>) = known.into_iter().unzip();
+    // The second inclusion from the top, or the only one.
+    let second = maps.len().min(2).checked_sub(1)?;
+    let (map, depth) = (maps[second], by_depth[second].0);
     let steps = ((longest - SHORTEST) / LONGER) as i32;
     let lengths = (0..=steps).map(|step| SHORTEST + LONGER * f64::from(step));
-    // The second inclusion from the top, or the only one.
-    let (depth, map) = maps[maps.len().min(2) - 1];
-    let by_length: Result<Vec<_>, Refusal> = lengths
-        .map(|length| Ok((length, of(map, length)?)))
+    let by_length: Vec<_> = lengths
+        .filter_map(|length| Some((length, of(map, length)?)))
         .collect();
-    let (by_depth, by_length) = (by_depth?, by_length?);
     let needed = found.required_gamma;
     let mut panels = [
         panel("γ, by depth of the inclusion", DEPTH, &by_depth, needed),
@@ -80,17 +77,13 @@ pub fn figure(run: &Run, found: &Findings) -> Result<Option<Plan>, Refusal> {
         .for_each(|line| line.name.clear());
     let words = words(found, longest, depth, &by_depth);
     let picture = Picture::Panels(panels.into());
-    Ok(Some(Plan::new(
-        "disturbed",
-        Topic::Detection,
-        words,
-        picture,
-    )))
+    Some(Plan::new("disturbed", Topic::Detection, words, picture))
 }
 
 /// γ of the inclusion of `map` in a sweep of a `length`, mm.
 fn gammas(run: &Run, map: &ForceMap, depth: f64, length: f64) -> Result<Gammas, Refusal> {
-    let samples = (1e-3 * length / STEP).round() as i32;
+    // No sample beyond the map.
+    let samples = (1e-3 * length / STEP + 1e-6).floor() as i32;
     let positions: Vec<f64> = (0..=samples)
         .map(|k| STEP * (f64::from(k) - 0.5 * f64::from(samples)))
         .collect();

@@ -102,6 +102,10 @@ fn bands(run: &Run, map: &ForceMap) -> [Vec<Line>; 2] {
     let Some((study, phantom)) = run.study.as_ref().zip(map.phantom()) else {
         return Default::default();
     };
+    // Another gel may have the same name.
+    if !study.plan.all_phantoms().any(|of| of == phantom) {
+        return Default::default();
+    }
     let kinds: [fn(f64) -> Kind; 2] = [
         |lateral_m| Kind::NormalForceN { lateral_m },
         |lateral_m| Kind::LateralForceN { lateral_m },

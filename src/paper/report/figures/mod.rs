@@ -46,11 +46,11 @@ pub fn figures(run: &Run, findings: &Findings) -> Result<Vec<Figure>, Refusal> {
     plans.extend(forces::figures(run, findings)?);
     plans.extend(theory::figures().map_err(Refusal::because("figures"))?);
     plans.extend(gamma::figure(run, findings));
-    plans.extend(disturbed::figure(run, findings)?);
+    plans.extend(disturbed::figure(run, findings));
     plans.extend(paths::figure(run, findings));
     plans.extend(theories::figures(run, findings)?);
     plans.extend(inputs::figure(run));
-    plans.extend(people::figures(run, &findings.people));
+    plans.extend(people::figures(run, findings));
     plans.extend(bridge::figure(findings));
     let mut names = FileNames::default();
     plans

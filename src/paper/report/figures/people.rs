@@ -9,7 +9,7 @@ use crate::psychophysics::{
 };
 use crate::report::people::width_ratios;
 use crate::report::text::{extremes, fixed, joined, millimetres, percent};
-use crate::report::{Run, Topic, inputs, normal_approximation, paper};
+use crate::report::{Findings, Run, Topic, inputs, normal_approximation, paper};
 use crate::study::Kind;
 use palpate::chart::style::{GREEN, GREY, INK, PALETTE, VERMILION};
 use palpate::chart::{Line, Panel};
@@ -55,7 +55,8 @@ fn depths(condition: &ConditionAnalysis) -> Vec<f64> {
 /// Figures 8 and 10 to 13.
 ///
 /// Implements: REP-030.
-pub fn figures(run: &Run, people: &Analysis) -> Vec<Plan> {
+pub fn figures(run: &Run, found: &Findings) -> Vec<Plan> {
+    let people = &found.people;
     let plan = |number, words, picture| {
         Plan::new(format!("figure-{number}"), Topic::People, words, picture)
     };
@@ -63,7 +64,7 @@ pub fn figures(run: &Run, people: &Analysis) -> Vec<Plan> {
     let mut plans = vec![plan(8, EXPERIMENTS.map(Into::into), experiments)];
     for (at, (of, number)) in people.conditions.iter().zip(10..13).enumerate() {
         let predicted = match at {
-            paper::FEM_PLAYBACK => predicted(run, of),
+            paper::FEM_PLAYBACK => predicted(run, found, of),
             _ => Vec::new(),
         };
         let words = subject_words(number, of, !predicted.is_empty());
@@ -160,11 +161,15 @@ fn subjects(condition: &ConditionAnalysis, predicted: Vec<Line>) -> Panel {
     }
 }
 
-/// The ends of the bands that a study has for the share that the peak of the normal signal predicts.
+/// The ends of the bands that a study has for the share that the peak of the normal signal predicts, of the paper's phantoms at the
+/// paper's depth.
 ///
 /// Implements: REP-081.
-fn predicted(run: &Run, condition: &ConditionAnalysis) -> Vec<Line> {
+fn predicted(run: &Run, found: &Findings, condition: &ConditionAnalysis) -> Vec<Line> {
+    let is_paper_depth = found.probe_depth_note.is_none();
+    let is_there = |name: &str| found.maps.iter().any(|of| of.paper_phantom == Some(name));
     let inclusions = condition.inclusions.iter();
+    let inclusions = inclusions.filter(|of| is_paper_depth && is_there(&of.name));
     let bands = inclusions.filter_map(|of| {
         let band = inputs::band(run, &of.name, &Kind::TwoAfcByPeak)?;
         Some((1e3 * of.depth_m, band))

@@ -113,6 +113,10 @@ impl Page<'_> {
             (Survival::Depends, "are rejected or not, as the inputs are"),
             (Survival::Fails, "are rejected for hardly any inputs"),
         ];
+        // The subjects felt the paper's depth.
+        let fates = fates
+            .into_iter()
+            .filter(|_| self.found.probe_depth_note.is_none());
         let sentence = |(fate, words): (Survival, &str)| {
             let conclusions = study.conclusions.iter().filter(|of| survival(of) == fate);
             let named = conclusions.filter_map(|of| match &of.quantity.kind {
@@ -125,7 +129,7 @@ impl Page<'_> {
             let listed = (!names.is_empty()).then(|| names.join("; "));
             listed.map(|named| format!("These explanations of the answers to FEM playback {words} (share of the draws): {named}."))
         };
-        fates.into_iter().filter_map(sentence).collect()
+        fates.filter_map(sentence).collect()
     }
 
     /// The band of the force without inclusion at x = 0; only for the paper's reference at the paper's depth.

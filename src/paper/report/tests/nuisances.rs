@@ -168,6 +168,23 @@ fn the_figure_shows_every_gamma() {
     assert!(figure.caption.contains("71.4 % to 71.4 % of it is left"));
 }
 
+// Verifies: REP-035, REP-003.
+#[test]
+fn an_inclusion_without_a_signal_is_left_out_of_the_disturbances() {
+    let mut run = paper_run();
+    let changes = GelChanges::new(&run.reference, 4e-3, &GelUncertainty::NONE);
+    run.changes = changes.unwrap();
+    run.maps[0] = triangle("2.6", 0.0);
+    let figures = made(&run).figures;
+    let figure = figures.iter().find(|of| of.file_name == "disturbed.svg");
+    let list = between(
+        &figure.unwrap().alt,
+        "the deepest inclusion: ",
+        ". A dashed",
+    );
+    assert_eq!(list.split(';').count(), 3, "{list}");
+}
+
 /// The heights of a class's dots are those of its numbers, which fall with the peak of the signal and grow with the sweep.
 // Verifies: REP-035, ROB-045.
 #[test]

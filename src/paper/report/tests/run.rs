@@ -57,7 +57,7 @@ pub fn at_5_mm(force: f64) -> impl Fn(f64) -> f64 {
 }
 
 /// A triangle of the height `peak` over ±10 mm, and a lateral third of it at ±5 mm.
-fn triangle(name: &str, peak: f64) -> ForceMap {
+pub fn triangle(name: &str, peak: f64) -> ForceMap {
     let normal = move |x: f64| peak * (1.0 - x.abs() / 10e-3);
     let phantom = Phantom::builtin(name).ok();
     map(phantom, &DEPTHS, normal, at_5_mm(peak / 3.0))
