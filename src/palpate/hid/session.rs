@@ -273,7 +273,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
         let (mut newest, mut passed_over) = (None, 0);
         let mut received = self.device.read(2 * self.capabilities.period())?;
         let woke = self.device.now();
-        for _ in 0..QUEUE {
+        for left in (0..QUEUE).rev() {
             match received {
                 Received::Report(report) => {
                     passed_over += u64::from(newest.replace(report).is_some());
@@ -281,7 +281,10 @@ impl<'a, D: HapticDevice> Session<'a, D> {
                 Received::Garbage(_) => self.counters.garbage += 1,
                 Received::Nothing => break,
             }
-            received = self.device.read(Duration::ZERO)?;
+            // What else has come is for the next cycle.
+            if left > 0 {
+                received = self.device.read(Duration::ZERO)?;
+            }
         }
         self.counters.cycles += 1;
         self.counters.passed_over += passed_over;

@@ -212,6 +212,40 @@ fn reports_passed_over_and_reports_that_never_came_are_counted_apart() {
     }
 }
 
+/// A device that always has one more report.
+struct Endless(PositionReport);
+
+impl HapticDevice for Endless {
+    fn capabilities(&mut self) -> Result<Capabilities, DeviceError> {
+        Ok(PAPER)
+    }
+    fn read(&mut self, _: Duration) -> Result<Received, DeviceError> {
+        self.0.sequence = self.0.sequence.wrapping_add(1);
+        Ok(Received::Report(self.0))
+    }
+    fn write(&mut self, report: &ForceReport) -> Result<(), DeviceError> {
+        self.0.force_sequence = report.sequence;
+        Ok(())
+    }
+    fn control(&mut self, _: Control) -> Result<(), DeviceError> {
+        Ok(())
+    }
+    fn now(&self) -> Duration {
+        Duration::ZERO
+    }
+}
+
+// Verifies: HID-013.
+#[test]
+fn a_cycle_takes_at_most_64_reports_and_loses_none() {
+    let mut session = begin(Endless(PositionReport::default()));
+    session.run(|_, counters| counters.cycles < 5);
+    let counters = session.counters();
+    // 63 in each cycle, but perhaps for those before the first.
+    let found = [counters.passed_over / counters.cycles, counters.skipped];
+    assert_eq!(found, [63, 0], "{counters:?}");
+}
+
 // Verifies: HID-013.
 #[test]
 fn reports_that_never_came_are_counted_where_the_numbers_begin_again() {
