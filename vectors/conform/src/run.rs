@@ -100,7 +100,12 @@ fn start_and_ask(settings: &Settings) -> Result<(Partner, Capabilities), Conform
         match partner.next(deadline) {
             Event::Line(line) => match Capabilities::read(&line) {
                 Some(capabilities) => return Ok((partner, capabilities)),
-                None if settings.lenient => {}
+                None if settings.lenient && Instant::now() < deadline => {}
+                // Lines that answer nothing are no answer, however many there are.
+                None if settings.lenient => {
+                    let told = farewell(partner, &Event::Silence, settings.timeout);
+                    break format!("the program {told}");
+                }
                 None => {
                     let text = cut(&String::from_utf8_lossy(&line));
                     break format!("the program answered {text:?}");
@@ -195,6 +200,9 @@ impl<P: FnMut(usize)> Run<'_, P> {
                         (self.progress)(settled);
                         // The time for the next case starts with the answer to the one before.
                         deadline = Instant::now() + self.settings.timeout;
+                    } else if Instant::now() >= deadline {
+                        // Lines that answer nothing are no answer, however many there are.
+                        return Some(Event::Silence);
                     }
                 }
                 end => return Some(end),

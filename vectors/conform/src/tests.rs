@@ -386,11 +386,19 @@ fn what_is_chosen_by_name_must_be_asked() {
     assert_eq!(of(&measure, unclaimed.clone()), None);
     measure.named = true;
     assert!(
-        of(&measure, unclaimed)
+        of(&measure, unclaimed.clone())
             .unwrap()
             .starts_with("roc not checked")
     );
-    assert_eq!(of(&measure, left_out), None);
+    assert_eq!(of(&measure, left_out.clone()), None);
+    // A case of the group that is left out besides changes nothing.
+    let outcomes = [
+        vec![Outcome::Right; 3],
+        vec![left_out, unclaimed.clone(), unclaimed],
+    ]
+    .concat();
+    let failure = verdict(&two_groups(), &measure, outcomes).failure();
+    assert!(failure.unwrap().starts_with("roc not checked"));
 }
 
 // Verifies: ORA-047.

@@ -144,7 +144,8 @@ impl Verdict {
             self.findings.push(finding);
         }
         let is_unclaimed = |outcome: &Outcome| matches!(outcome, Outcome::Unclaimed(_));
-        if outcomes.iter().all(is_unclaimed) {
+        // Others of the group may be left out.
+        if outcomes.iter().any(is_unclaimed) {
             self.unclaimed.push(group.op.clone());
         }
         self.diagnosis
