@@ -34,7 +34,10 @@ pub(crate) const GROUPS: &[(&str, &str, &[&str])] = groups! {
     "ljung_box_" ["NUI-020"] "The test for white noise rejects it as often as it should."
     "bank_" ["BNK-031", "BNK-034", "BNK-040", "BNK-042", "CLI-153"]
         "The posterior of a bank is calibrated: ranks and intervals of the place, and the probability of an inclusion."
-    "" ["DET-070", "DET-080"] "Mixtures of depths, and noise in proportion to the force, have their false alarms and tails."
+    "robust_" ["ROB-031", "ROB-032"] "The posterior over classes of disturbance is calibrated, where the record is of one of them."
+    "sequential_" ["SEQ-001", "SEQ-010", "SEQ-012"] "A sequential test keeps its rates of error, also on a record that is too short."
+    "mixture_" ["DET-070", "DET-080"] "Mixtures of depths have their false alarms and tails."
+    "weber_" ["DET-070", "DET-080"] "Noise in proportion to the force has its false alarms and tails."
 };
 
 fn group(name: &str) -> (&'static str, &'static [&'static str]) {

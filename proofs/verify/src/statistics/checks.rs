@@ -66,7 +66,9 @@ pub(super) fn kolmogorov_test(sample: &[f64], law: Law, alpha: f64) -> Outcome<F
 pub(super) fn uniform_test(mut sample: Vec<f64>, alpha: f64) -> Figure {
     sample.sort_unstable_by(f64::total_cmp);
     let n = sample.len() as f64;
-    let mut distance = 0.0_f64;
+    // What is no number is as far as can be: a maximum passes over it.
+    let are_numbers = sample.iter().all(|x| x.is_finite());
+    let mut distance = if are_numbers { 0.0 } else { f64::INFINITY };
     for (i, x) in sample.iter().enumerate() {
         distance = distance.max(x - i as f64 / n).max((i + 1) as f64 / n - x);
     }
