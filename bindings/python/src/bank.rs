@@ -150,6 +150,14 @@ fn record(
     let forces = forces.as_ref().map(Vec::as_slice);
     let depths = depths_mm.map(|depths| list("depths_mm", depths, -3));
     let record = match depths.transpose()? {
+        None if bank.probe_depths().len() > 1 => {
+            let found = format!(
+                "the bank has {} depths of the probe",
+                bank.probe_depths().len()
+            );
+            let remedy = "give depths_mm, the depth of each sample";
+            return Err(refused(Refusal::state(found, remedy)));
+        }
         None => Record::new("record", &positions, forces),
         Some(depths) => Record::along("record", &positions, &depths, forces),
     };
@@ -276,7 +284,10 @@ impl Bank {
             ("stiffnesses_kpa", stiffnesses_kpa, 3, &mut plan.moduli),
         ] {
             if let Some(values) = values {
-                *place = list(name, values, power)?;
+                *place = match power {
+                    -3 => lengths(name, values)?,
+                    _ => list(name, values, power)?,
+                };
             }
         }
         let mut maps = py.detach(|| solved(&plan, progress.as_ref()))?;

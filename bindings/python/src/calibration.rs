@@ -4,7 +4,7 @@ use palpate::calibration::{self, CalibrationQuestion, Curve, Indentation};
 use pyo3::prelude::*;
 
 use crate::classes::Phantom;
-use crate::convert::{Any, interruptible, list, python, refused, si};
+use crate::convert::{Any, interruptible, lengths, list, python, refused, si};
 
 /// What a force-depth curve says of a gel: the answer of palpate calibrate for one curve.
 #[doc = sections!(
@@ -36,7 +36,7 @@ pub fn calibrate<'py>(
     mesh_mm: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (depths, forces) = (
-        list("depths_mm", depths_mm, -3)?,
+        lengths("depths_mm", depths_mm)?,
         list("forces_n", forces_n, 0)?,
     );
     let times = times_s.map(|times| list("times_s", times, 0)).transpose()?;

@@ -140,6 +140,24 @@ pub fn channels<'py, S: AsRef<[f64]>>(
     array(py, shape, force.into_array().concat())
 }
 
+/// The class of NumPy's masked arrays.
+fn masked_array(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
+    py.import("numpy.ma")?.getattr("MaskedArray")
+}
+
+/// Whether `values` are a masked array, or a list with one in it: NumPy would make numbers of what is masked.
+fn has_mask<'py>(values: &Bound<'py, PyAny>, masked: &Bound<'py, PyAny>) -> PyResult<bool> {
+    if !values.is_instance_of::<PyList>() && !values.is_instance_of::<PyTuple>() {
+        return values.is_instance(masked);
+    }
+    for value in values.try_iter()? {
+        if has_mask(&value?, masked)? {
+            return Ok(true);
+        }
+    }
+    Ok(false)
+}
+
 /// What NumPy makes of `values` as 64-bit floats in C order: the array itself where it is that already.
 ///
 /// Implements: PYT-003, PYT-005.
@@ -148,7 +166,7 @@ pub fn floats<'py>(
     values: &Bound<'py, PyAny>,
 ) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let numpy = values.py().import("numpy")?;
-    let masked = values.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)?;
+    let masked = has_mask(values, &masked_array(values.py())?)?;
     let kind: String = numpy
         .call_method1("asarray", (values,))
         .and_then(|array| array.getattr("dtype")?.getattr("kind")?.extract())
@@ -376,8 +394,18 @@ pub fn json(value: &Bound<PyAny>) -> PyResult<String> {
     let py = value.py();
     // Arrays, series and frames.
     let arrays = PyCFunction::new_closure(py, None, None, |arguments, _| {
-        let numpy = arguments.py().import("numpy")?;
-        let array = numpy.call_method1("asarray", arguments)?;
+        let (py, value) = (arguments.py(), arguments.get_item(0)?);
+        let array = py.import("numpy")?.call_method1("asarray", (&value,))?;
+        let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+        // Any other object is an array of itself, without an axis.
+        let axes: usize = array.getattr("ndim")?.extract()?;
+        let is_json = "biufU".contains(&*kind) || kind == "O" && axes > 0;
+        if !is_json || value.is_instance(&masked_array(py)?)? {
+            let found = value.get_type().name()?;
+            let message =
+                format!("a {found} is no argument; give numbers, texts or arrays of them");
+            return Err(PyTypeError::new_err(message));
+        }
         array.call_method0("tolist").map(Bound::unbind)
     })?;
     let options = PyDict::new(py);

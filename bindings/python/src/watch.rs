@@ -58,7 +58,7 @@ impl Watcher {
         lateral_force_n: "float, optional" = "Lateral force along +x, if the sensor has it, N.",
         depth_mm: "float, optional" = "Depth of the sample, for a bank of several depths of the probe, mm.";
         "dict" = "The JSON of palpate watch, in SI (posterior_h1, decision, likeliest ...), and reasons, the words for causes.";
-        "An infinity, or a force or a depth that other samples do not have."
+        "An infinity, a force beyond 1e50 times its noise, or a depth that is missing, where the bank has several."
     )]
     #[pyo3(signature = (position_mm, normal_force_n, lateral_force_n=None, depth_mm=None))]
     fn push<'py>(

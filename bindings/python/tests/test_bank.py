@@ -234,6 +234,8 @@ def test_each_sample_may_have_its_depth():
         last = watcher.push(*sample)
     assert math.isclose(last["theta"], whole["theta_mixture"], abs_tol=1e-9)
     for call in (bank.locate, bank.judge):
+        with pytest.raises(palpate.Refused, match="the bank has 2 depths of the probe; give depths_mm"):
+            call(x, truth.sweep(2, x), noise_sd_n=0.05)
         with pytest.raises(palpate.Refused):
             call(x, truth.sweep(4, x), noise_sd_n=0.05, depths_mm=[4.0])
         with pytest.raises(palpate.Refused, match="at a depth of 5.0 mm is outside the maps, .* leave it out$"):

@@ -146,6 +146,12 @@ def test_shapes_that_do_not_fit_are_refused():
     for wrong in ("abc", None, [[1, 2], [3]], observed + 1j, np.ma.masked_array(observed), [["1"], ["2"]]):
         with pytest.raises(TypeError, match="observed is a"):
             palpate.theta(wrong, f0, f1, 0.1)
+    # NumPy makes a number of what is masked, also in a list and in a question to the oracle.
+    with pytest.raises(TypeError, match="observed is a list"):
+        palpate.theta([np.ma.masked_array(channel) for channel in observed], f0, f1, 0.1)
+    for wrong in (np.ma.masked, np.ma.masked_array([1.0, 2.0], [0, 1]), 1j, np.array([1j]), object()):
+        with pytest.raises(TypeError, match="is no argument; give numbers"):
+            palpate.ask("two_afc", gamma=wrong)
 
 
 def test_the_matched_filter_of_a_batch():

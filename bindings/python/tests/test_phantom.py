@@ -260,6 +260,8 @@ def test_metres_are_doubted(phantom):
         (lambda: palpate.ForceMap([1, 2], [-0.008, 0.008], one, one), "laterals_mm"),
         (lambda: phantom.map([0.001, 0.004], [0, 1], **COARSE), "depths_mm"),
         (lambda: palpate.Bank.build(phantom, 4, [-0.004, 0, 0.004], offsets_mm=[0], **COARSE), "laterals_mm"),
+        (lambda: palpate.Bank.build(phantom, 4, [-4, 0, 4], offsets_mm=[-0.002, 0, 0.002], **COARSE), "offsets_mm"),
+        (lambda: palpate.calibrate(np.linspace(0, 0.004, 30), np.linspace(0, 1, 30) ** 2, mesh_mm=2), "depths_mm"),
     ):
         with pytest.warns(UserWarning, match=name):
             call()
