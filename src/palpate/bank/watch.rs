@@ -10,7 +10,7 @@ use crate::force::Force;
 use crate::force_map::{ForceTable, Place, Stencil, increasing};
 use crate::refusal::Refusal;
 use crate::stats::error::{check_positive, check_probability, check_samples, in_range};
-use crate::trace::contact::wrong_level;
+use crate::trace::contact::wrong_gain;
 use crate::trace::design::{self, depth_slope, difference, single_depth, slope, stacked};
 use crate::trace::{Cause, Record, Unknown, refused};
 
@@ -372,11 +372,8 @@ impl Watcher {
     /// Implements: SEQ-023.
     fn causes(&self, likeliest: Option<(usize, Evidence)>) -> impl Iterator<Item = Cause> + use<> {
         let [cross, squares] = self.contact;
-        // Another gel than that of the bank is a gain.
-        let level = (!self.question.is_zeroed && squares > 0.0)
-            .then(|| wrong_level(cross / squares))
-            .flatten()
-            .filter(|&of| of != Cause::Level);
+        let has_level = !self.question.is_zeroed && squares > 0.0;
+        let level = has_level.then(|| cross / squares).and_then(wrong_gain);
         let told = likeliest.map_or(0.0, |(_, of)| of.along * of.along / of.gamma_squared);
         let degrees =
             self.found.rows() as f64 - self.found.rank() as f64 - f64::from(likeliest.is_some());

@@ -55,6 +55,13 @@ pub fn wrong_level(level: f64) -> Option<Cause> {
     }
 }
 
+/// The same where another gel than that of the maps is a gain, which is fitted.
+///
+/// Implements: TRC-016, SEQ-023.
+pub fn wrong_gain(level: f64) -> Option<Cause> {
+    wrong_level(level).filter(|&of| of != Cause::Level)
+}
+
 /// How many samples at the start and at the end are in air: those beside the part of the record that is likeliest in contact, in noise of
 /// this `variance`, N². There the force is L f, with the largest level L of four parts of the record, and beside it there is none.
 /// An end is not in air where that is not 10⁶ times as likely as contact, or where its L f is below 0.5 N in the mean, and none is where that

@@ -1,7 +1,7 @@
 //! Whether a record fits either hypothesis.
 
 use super::cause::Cause;
-use super::contact::{in_air, level, wrong_level};
+use super::contact::{in_air, level, wrong_gain};
 use super::design::{Design, squares, whitened};
 use super::question::{Correlation, Noise, Question, Unknown};
 use super::{Trace, refused};
@@ -108,11 +108,7 @@ impl Fit {
     /// Implements: TRC-070, TRC-075, TRC-016, TRC-017.
     pub fn causes(&self) -> Vec<Cause> {
         let is_coloured = self.whiteness.is_some_and(|p| p < MISFIT_RATE);
-        // Another gel than that of the maps is a gain.
-        let level = self
-            .level
-            .and_then(wrong_level)
-            .filter(|&of| of != Cause::Level);
+        let level = self.level.and_then(wrong_gain);
         let checks = [
             (self.in_air != [0; 2], Cause::InAir),
             (!self.noise_is_right(), Cause::Misfit),
