@@ -71,7 +71,7 @@ pub struct Entry {
 pub enum End {
     /// It did not run.
     Missing,
-    /// The run left it to `.ci/run all`.
+    /// The run left it to another part of `.ci/run`.
     Left,
     /// It has the attribute `#[ignore]`, and no step ran it.
     Ignored,

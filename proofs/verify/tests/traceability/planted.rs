@@ -297,7 +297,7 @@ fn what_is_left_to_the_night_is_not_missed_by_day() {
     }
     let left = results("passed\t60", "left\t").missing(&sound());
     assert_eq!(left, [""; 0]);
-    // It hides no failure, and no test that is not ignored.
+    // It hides no failure, and no test of another kind.
     let left = "left\t\tcargo nextest run -p small-one --run-ignored only\n";
     for (from, to) in [
         ("time=\"2.5\"/>", "><failure/></testcase>"),
@@ -306,6 +306,24 @@ fn what_is_left_to_the_night_is_not_missed_by_day() {
         let mut results = results(from, to);
         results.add_steps(left).expect("three columns");
         assert_eq!(results.missing(&sound()).len(), 1, "{from}");
+    }
+}
+
+#[test]
+fn what_is_left_to_the_day_is_not_missed_by_night() {
+    let left = |step: &str| {
+        let mut results = results("tests::holds", "tests::renamed");
+        results.add_steps(&format!("left\t\t{step}\n")).unwrap();
+        results.missing(&sound())
+    };
+    assert_eq!(left("cargo nextest run --workspace"), [""; 0]);
+    assert_eq!(left("cargo nextest run -p small-one"), [""; 0]);
+    for other in [
+        "cargo nextest run --workspace --test slow",
+        "cargo nextest run --workspace --run-ignored only",
+        "cargo clippy --workspace",
+    ] {
+        assert_eq!(left(other).len(), 1, "{other}");
     }
 }
 

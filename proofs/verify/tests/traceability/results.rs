@@ -117,10 +117,14 @@ impl Results {
         };
         match (ran, evidence) {
             (Some(ended), _) if ended.0 != End::Ignored => ended,
-            (_, Evidence::Test { ignored: true }) => {
+            (_, &Evidence::Test { ignored }) => {
                 let mut left = self.steps.iter().filter(|(_, (end, _))| *end == End::Left);
-                let is_left = left.any(|(command, _)| runs_ignored(command, name));
-                (if is_left { End::Left } else { End::Ignored }, None)
+                let end = match left.any(|(command, _)| runs_test(command, name, ignored)) {
+                    true => End::Left,
+                    false if ignored => End::Ignored,
+                    false => End::Missing,
+                };
+                (end, None)
             }
             _ => (End::Missing, None),
         }
@@ -185,20 +189,17 @@ fn runs(command: &str, path: &str) -> bool {
             })
 }
 
-/// Whether a command of cargo-nextest runs the ignored tests of the program of this test: it names the test program
-/// (`--test NAME`), or the package and no test program (`-p NAME`).
-fn runs_ignored(command: &str, test: &str) -> bool {
+/// Whether a command runs this test by cargo-nextest, which takes the ignored tests or the others: it names the test program
+/// (`--test NAME`), or no test program, and the package (`-p NAME`) or all of them.
+fn runs_test(command: &str, test: &str, ignored: bool) -> bool {
     let program = test.split(' ').next().unwrap_or_default();
     let (package, target) = program.split_once("::").unwrap_or((program, ""));
     let words: Vec<&str> = command.split_whitespace().collect();
-    let after = |flag: &'static str| {
-        let pairs = words.windows(2).filter(move |pair| pair[0] == flag);
-        pairs.map(|pair| pair[1])
-    };
+    let after = |flag: &str, value: &str| words.windows(2).any(|pair| pair == [flag, value]);
     let is_named = if words.contains(&"--test") {
-        after("--test").any(|name| name == target)
+        after("--test", target)
     } else {
-        after("-p").any(|name| name == package)
+        words.contains(&"--workspace") || after("-p", package)
     };
-    after("--run-ignored").next().is_some() && is_named
+    words.contains(&"nextest") && words.contains(&"--run-ignored") == ignored && is_named
 }
