@@ -14,7 +14,7 @@ use palpate::bank::{Bank, BankPlan};
 use palpate::detect::Decision;
 use palpate::fem::{Contact, Model};
 use palpate::force::Force;
-use palpate::force_map::ForceTable;
+use palpate::force_map::{ForceMap, ForceTable};
 use palpate::phantom::{Phantom, PhantomParts};
 use palpate::robust::{
     BankHypotheses, GelChanges, GelUncertainty, RobustAnswer, RobustDetector, RobustPlace,
@@ -211,7 +211,7 @@ const WORST: [(&str, [u64; 2]); 1] = [("bump", [3, 6])];
 
 // Verifies: ROB-060, ROB-041, ROB-022.
 #[test]
-#[ignore = "half an hour without optimisation"]
+#[ignore = "three minutes"]
 fn false_answers_are_rare_in_every_family() {
     let records = 30;
     let bank = bank();
@@ -304,21 +304,7 @@ fn records_of_a_broken_sensor_are_not_judged() {
         ("air", Cause::NoContact),
     ];
     let bank = bank();
-    let table = bank.reference().table().row(DEPTH).unwrap();
-    let text = |row: usize| {
-        format!(
-            "4,{},{},{}\n",
-            1e3 * bank.reference().table().laterals()[row],
-            table.normal[row],
-            table.lateral[row]
-        )
-    };
-    let rows: String = (0..table.normal.len()).map(text).collect();
-    let table = ForceTable::from_csv(
-        &format!("depth_mm,lateral_mm,normal_force_n,lateral_force_n\n{rows}"),
-        "gel",
-    )
-    .unwrap();
+    let table = at_depth(bank.reference());
     for detector in &detectors(&bank) {
         for (stream, (family, cause)) in (1000..).zip(causes) {
             let of = MOTIONS.iter().find(|of| of.0 == family).unwrap();
@@ -332,6 +318,46 @@ fn records_of_a_broken_sensor_are_not_judged() {
             }
         }
     }
+}
+
+// Verifies: ROB-001, ROB-009.
+#[test]
+fn a_lateral_force_that_is_not_what_it_is_said_to_be_hides_no_inclusion() {
+    let bank = bank();
+    let is_disc = |map: &usize| bank.point(*map)[..2] == [0.0, 4.6e-3];
+    let map = (0..bank.maps().len()).find(is_disc).unwrap();
+    let table = at_depth(&bank.maps()[map]);
+    let wrong: [fn(f64) -> f64; 3] = [|force| -force, |force| 1e-3 * force, |_| 0.5];
+    for detector in &detectors(&bank) {
+        for (stream, wrong) in (1100..).zip(wrong) {
+            let mut seen = 0;
+            for sd in [0.02, 0.1] {
+                let records = (0..10).map(|trial| {
+                    let [lateral, normal] = record(&table, (plain, nothing), sd, stream, trial);
+                    [lateral.into_iter().map(wrong).collect(), normal]
+                });
+                let ([_, none, _], answers) = answers(detector, records);
+                assert_eq!(none, 0, "{stream}, {sd} N");
+                let causes = answers.iter().flat_map(|answer| &answer.causes);
+                seen += causes
+                    .filter(|cause| [Cause::Channels, Cause::Saturated].contains(cause))
+                    .count();
+            }
+            assert!(seen > 0, "{stream}");
+        }
+    }
+}
+
+/// The forces of a map at the depth of the sweeps alone.
+fn at_depth(map: &ForceMap) -> ForceTable {
+    let (laterals, forces) = (map.table().laterals(), map.table().row(DEPTH).unwrap());
+    let text = |row: usize| {
+        let [lateral, normal] = [forces.lateral[row], forces.normal[row]];
+        format!("4,{},{normal},{lateral}\n", 1e3 * laterals[row])
+    };
+    let rows: String = (0..laterals.len()).map(text).collect();
+    let head = "depth_mm,lateral_mm,normal_force_n,lateral_force_n\n";
+    ForceTable::from_csv(&format!("{head}{rows}"), "gel").unwrap()
 }
 
 /// By the posterior in steps of its logit: the sum of posteriors, the number of records with an inclusion, and of all.

@@ -1,10 +1,12 @@
 //! The robust model, which is the default, end to end.
 
-use super::{MAPS, maps, place, sweep, write_trace};
+use super::{MAPS, NOISE, maps, place, sweep, write_trace};
 use crate::program::text;
 use palpate::file::from_toml;
+use palpate::force::Force;
 use palpate::force_map::ForceMap;
 use palpate::robust::GelUncertainty;
+use palpate::stats::random::Generator;
 use palpate_asserts::assert_has;
 use serde_json::{Value, json};
 
@@ -14,6 +16,66 @@ fn answer(arguments: &str) -> (Value, Option<i32>) {
     let said = text(&output.stderr).to_string();
     let answer = serde_json::from_slice(&output.stdout);
     (answer.expect(&said), output.status.code())
+}
+
+// Verifies: ROB-012.
+#[test]
+fn slow_noise_of_a_blank_sweep_counts_more_and_is_told_as_it_is() {
+    // Each force for four samples: the standard deviation is that of the forces, and the correlation length about 4.
+    let generator = Generator::new(20_261_128, 1);
+    let rows = (0..1200).map(|i| {
+        let force = |(sd, channel)| sd * generator.normal(channel, i / 4);
+        let Force { lateral, normal } = NOISE.zip(Force::new(0, 1)).map(force);
+        format!("{i},{lateral},{normal}\n")
+    });
+    let head = "time_ms,lateral_force_n,normal_force_n\n".to_string();
+    place().write("slow.csv", head + &rows.collect::<String>());
+    let found = |noise: &str| answer(&format!("with.csv {MAPS} --depth-mm 3 {noise}")).0;
+    let slow = found("--noise slow.csv");
+    let white = found("--noise-sd-lateral-n 0.05 --noise-sd-normal-n 0.12");
+    let keys = Force::new("noise_sd_lateral_n", "noise_sd_normal_n");
+    for (key, sd) in keys.zip(NOISE).into_array() {
+        // Of 300 forces it is known to 1/√600.
+        let ratio = slow[key].as_f64().unwrap() / sd;
+        assert!((ratio - 1.0).abs() < 5.0 / 600_f64.sqrt(), "{slow}");
+    }
+    let theta = |found: &Value| found["theta"].as_f64().unwrap();
+    assert!(theta(&slow) < 0.8 * theta(&white), "{slow} {white}");
+}
+
+// Verifies: ROB-001, ROB-009.
+#[test]
+fn a_lateral_force_that_is_none_or_of_the_other_sign_gives_no_answer() {
+    let [_, map] = maps(place());
+    let write = |factor: f64, stream| {
+        let generator = Generator::new(20_261_128, stream);
+        let rows = (0..).zip(sweep(map.table()));
+        let rows = rows.map(|(i, [x, lateral, normal])| {
+            let noise = [0, 1].map(|channel| 0.01 * generator.normal(channel, i));
+            let lateral = factor * (lateral + noise[0]);
+            format!("{x},{lateral:e},{:e}\n", normal + noise[1])
+        });
+        let head = "position_mm,lateral_force_n,normal_force_n\n";
+        place().write("lateral.csv", format!("{head}{}", rows.collect::<String>()));
+    };
+    // Without the class in which the probe rubs unevenly, 33 samples are enough.
+    let asked = || answer(&format!("lateral.csv {MAPS} --depth-mm 3 --known friction"));
+    for stream in 2..6 {
+        for (factor, decision, causes, code) in [
+            (1.0, "inclusion", json!([]), 0),
+            (-1.0, "cannot_be_judged", json!(["channels"]), 3),
+            (0.0, "cannot_be_judged", json!(["saturated"]), 3),
+        ] {
+            write(factor, stream);
+            let (found, ended) = asked();
+            let expected = (&json!(decision), &causes, Some(code));
+            assert_eq!(
+                (&found["decision"], &found["causes"], ended),
+                expected,
+                "{found}"
+            );
+        }
+    }
 }
 
 // Verifies: ROB-085.

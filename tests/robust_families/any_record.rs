@@ -155,6 +155,7 @@ fn any_question(u: &mut Draws) -> RobustQuestion<'static> {
         is_white: u.unit() < 0.3,
         prior_h1: u.between(1e-6, 1.0),
         sure: u.between(0.51, 0.999_999),
+        correlation_length: u.between(1.0, 100.0),
     }
 }
 

@@ -6,7 +6,7 @@ use std::ops::AddAssign;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::classes::{CLASSES, Class, Covariance, Disturbances, Part, SUPPORT_ALONE, SharedBy};
-use super::evidence::{Evidence, Signal, WeightedClass, evidence};
+use super::evidence::{Evidence, Signal, WeightedClass, evidence, log_sum};
 use super::sweep::{Cleaned, PreparedSweep, prepared};
 use super::{RobustAnswer, RobustQuestion, RobustSignal, RobustSweep, channels};
 use crate::detect::{Decision, DetectError, ErrorRates, error_rates, map_threshold, posterior};
@@ -23,6 +23,8 @@ const MISFIT_RATE: f64 = 1e-5;
 ///
 /// Implements: ROB-008.
 const LARGEST: f64 = 1e20;
+/// By so much ln of the likelihood, a thousandfold, records are likelier whose lateral force has the other sign.
+const MUCH_LIKELIER: f64 = 6.9;
 /// A record allows a class with a posterior above this.
 const ALLOWED: f64 = 0.01;
 
@@ -89,15 +91,7 @@ impl<'a> RobustDetector<'a> {
             .filter_map(|(at, is)| is.then_some(at))
             .collect();
         if counted.len() < shape.nrows() {
-            let cut =
-                |of: &mut DMatrix<f64>| *of = of.select_rows(&counted).select_columns(&counted);
-            cut(&mut shape);
-            weighted
-                .iter_mut()
-                .for_each(|class| cut(&mut class.covariance));
-            signals
-                .iter_mut()
-                .for_each(|of| of.mean = of.mean.select_rows(&counted));
+            (weighted, signals, shape) = of_rows(&counted, &weighted, &signals, &shape);
         }
         if signals.iter().all(|signal| signal.mean.amax() == 0.0) {
             return Err(refused(DetectError::NoSignal));
@@ -162,6 +156,12 @@ impl<'a> RobustDetector<'a> {
             return Ok(answer);
         };
         self.conclude(&found, &noise, &mut answer)?;
+        let is_turned = answer.decision == Some(Decision::NoInclusion)
+            && self.is_likelier_turned(&cleaned, level, &noise, &found);
+        if is_turned || self.is_contradicted(&answer, [&record, &noise])? {
+            answer.decision = None;
+            answer.causes.push(Cause::Channels);
+        }
         answer.explanation = self.explanation(cleaned, level, [&record, &noise], &answer);
         if self.is_exchanged {
             answer.decision = None;
@@ -262,6 +262,64 @@ impl<'a> RobustDetector<'a> {
         Ok(())
     }
 
+    /// Whether the records are much likelier with the other sign of their lateral forces than as they are.
+    ///
+    /// Implements: ROB-009.
+    fn is_likelier_turned(
+        &self,
+        cleaned: &[Cleaned],
+        level: f64,
+        noise: &DVector<f64>,
+        found: &Evidence,
+    ) -> bool {
+        let turned = self.sweeps.iter().zip(cleaned).flat_map(|(sweep, of)| {
+            let mut of = of.clone();
+            of.forces
+                .lateral
+                .iter_mut()
+                .for_each(|force| *force = -*force);
+            let [amplitudes, _] = sweep.reduced(&of, level);
+            amplitudes.as_slice().to_vec()
+        });
+        let turned = DVector::from_vec(turned.collect()).select_rows(&self.counted);
+        let turned = evidence(&turned, noise, &self.weighted, &self.signals, &self.shape);
+        let whole = |of: &Evidence| {
+            let [none, any] = of.totals();
+            log_sum(none, any)
+        };
+        turned.is_some_and(|turned| whole(&turned) > whole(found) + MUCH_LIKELIER)
+    }
+
+    /// Whether the normal forces alone say the opposite of a decision, and as surely: the lateral ones are not what they are said to be.
+    ///
+    /// Implements: ROB-009.
+    fn is_contradicted(
+        &self,
+        answer: &RobustAnswer,
+        [record, noise]: [&DVector<f64>; 2],
+    ) -> Result<bool, Refusal> {
+        let modes = self.sweeps.iter().map(|sweep| sweep.modes.count());
+        let is_normal = modes.flat_map(|count| (0..2 * count).map(move |mode| mode >= count));
+        let is_normal: Vec<bool> = is_normal.collect();
+        let rows = (0..self.counted.len()).filter(|&row| is_normal[self.counted[row]]);
+        let rows: Vec<usize> = rows.collect();
+        let Some(decision) = answer.decision.filter(|_| rows.len() < record.len()) else {
+            return Ok(false);
+        };
+        let (classes, signals, shape) = of_rows(&rows, &self.weighted, &self.signals, &self.shape);
+        let [record, noise] = [record, noise].map(|of| of.select_rows(&rows));
+        let Some(found) = evidence(&record, &noise, &classes, &signals, &shape) else {
+            return Ok(false);
+        };
+        let [none, any] = found.totals();
+        let question = &self.question;
+        let alone = posterior(any - none, question.prior_h1).map_err(refused)?;
+        Ok(match decision {
+            Decision::Inclusion => alone <= 1.0 - question.sure,
+            Decision::NoInclusion => alone >= question.sure,
+        })
+    }
+
     /// γ of signal number `signal` beside each class, in white noise of a standard deviation, N: the signal-to-noise ratio if the
     /// class is the right one.
     ///
@@ -323,6 +381,25 @@ impl<'a> RobustDetector<'a> {
         }
         Ok(Some(largest))
     }
+}
+
+/// The classes, the signals and the covariance of their shape in some of their amplitudes.
+fn of_rows(
+    rows: &[usize],
+    classes: &[WeightedClass],
+    signals: &[Signal],
+    shape: &DMatrix<f64>,
+) -> (Vec<WeightedClass>, Vec<Signal>, DMatrix<f64>) {
+    let cut = |of: &DMatrix<f64>| of.select_rows(rows).select_columns(rows);
+    let classes = classes.iter().map(|class| WeightedClass {
+        covariance: cut(&class.covariance),
+        ..*class
+    });
+    let signals = signals.iter().map(|signal| Signal {
+        mean: signal.mean.select_rows(rows),
+        ..*signal
+    });
+    (classes.collect(), signals.collect(), cut(shape))
 }
 
 /// γ of a signal in noise of a factorised covariance.

@@ -38,7 +38,9 @@ pub fn is_saturated(channel: &[f64]) -> bool {
         let most = inner.max(other);
         count as f64 >= f64::max(4.0, 0.02 * samples) && count > 3 * most && count as f64 > coarse
     };
-    runs.len() > 1 && (is_end(*first, *last) || is_end(*last, *first))
+    // One value alone is both ends.
+    let is_constant = runs.len() == 1 && samples >= 4.0;
+    is_constant || is_end(*first, *last) || is_end(*last, *first)
 }
 
 /// Whether one value is nearly all of the normal force, which differs from place to place over a gel.

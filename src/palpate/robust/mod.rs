@@ -51,8 +51,10 @@ pub struct RobustQuestion<'a> {
     pub known: &'a [Part],
     /// Whether the sensor was set to zero on the gel.
     pub is_zeroed: bool,
-    /// The standard deviation of white noise on a sample, N; none if it is to be estimated from the record.
+    /// The standard deviation of the noise on a sample, N; none if it is to be estimated from the record.
     pub noise_sd: Option<Force<f64>>,
+    /// The correlation length of the noise that is stated, samples: 1 of white noise.
+    pub correlation_length: f64,
     /// Whether noise that is estimated is white.
     pub is_white: bool,
     /// Pr(H = 1) before the sweep.
@@ -87,6 +89,7 @@ impl Default for RobustQuestion<'_> {
             known: &[],
             is_zeroed: false,
             noise_sd: None,
+            correlation_length: 1.0,
             is_white: false,
             prior_h1: 0.5,
             sure: 0.95,
@@ -155,9 +158,19 @@ impl RobustQuestion<'_> {
             )?;
             let sd = self.noise_sd.unwrap_or(Force::new(1.0, 1.0));
             check_positive("noise_sd_lateral_n", sd.lateral)?;
-            check_positive("noise_sd_normal_n", sd.normal)
+            check_positive("noise_sd_normal_n", sd.normal)?;
+            let length = self.correlation_length;
+            in_range(length >= 1.0, "correlation_length", length, "at least 1")
         };
         checked().map(|_| ()).map_err(Refusal::from)
+    }
+
+    /// The variance of the modes of the noise that is stated, N².
+    ///
+    /// Implements: ROB-012.
+    fn stated_power(&self) -> Option<Force<f64>> {
+        let power = |sd: f64| sd * sd * self.correlation_length;
+        self.noise_sd.map(|sd| sd.map(power))
     }
 
     /// Judges sweeps of one place for the inclusion of one map, where that map has it.

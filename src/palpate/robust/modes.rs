@@ -77,9 +77,9 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// White noise of a variance, N².
-    pub fn white(modes: &Modes, variance: f64) -> Spectrum {
-        let of_modes = vec![variance; modes.count()];
+    /// Noise that has the same power, N², at each mode, and this variance of a sample, N².
+    pub fn even(modes: &Modes, power: f64, variance: f64) -> Spectrum {
+        let of_modes = vec![power; modes.count()];
         Spectrum { of_modes, variance }
     }
 }

@@ -34,7 +34,11 @@ pub struct PreparedSweep {
     is_reversed: bool,
 }
 
+/// The noise of the lateral force, over that of the normal force, below which it is in another unit, or comes from no sensor.
+const QUIET: f64 = 0.02;
+
 /// A record without its glitches.
+#[derive(Clone)]
 pub struct Cleaned {
     pub forces: Force<Vec<f64>>,
     /// Σ F f/Σ f² of its normal force.
@@ -191,7 +195,7 @@ fn undisturbed(
 /// The least variance of the noise of each channel, N²: that of its resolution, and that which is stated.
 fn least_variance(steps: Force<f64>, stated: Option<Force<f64>>) -> Force<f64> {
     let stated = stated.unwrap_or_default();
-    let least = |(step, sd): (f64, f64)| f64::max(step * step / 12.0, sd * sd);
+    let least = |(step, stated): (f64, f64)| f64::max(step * step / 12.0, stated);
     steps.zip(stated).map(least)
 }
 
@@ -232,7 +236,7 @@ impl PreparedSweep {
             return [0; 2];
         }
         let expected = channels(&self.undisturbed.forces).normal;
-        let stated = question.noise_sd.map(|sd| sd.normal * sd.normal);
+        let stated = question.stated_power().map(|power| power.normal);
         let ends = |normal: &[f64]| {
             let steps = normal.windows(2).map(|pair| pair[1] - pair[0]);
             let squares = steps.map(|step| 0.5 * step * step).sum::<f64>();
@@ -269,7 +273,7 @@ impl PreparedSweep {
     /// A record of the sweep without its glitches, its level and its noise; or why it cannot be judged. The `level` of all sweeps says
     /// what uneven depths add.
     ///
-    /// Implements: ROB-001, ROB-002, ROB-004, ROB-011.
+    /// Implements: ROB-001, ROB-002, ROB-004, ROB-009, ROB-011.
     pub fn cleaned(
         &self,
         question: &RobustQuestion<'_>,
@@ -286,7 +290,8 @@ impl PreparedSweep {
         }
         let steps = record.map(gates::step);
         let uneven = self.uneven(level);
-        let least = least_variance(steps, question.noise_sd);
+        let stated = question.stated_power();
+        let least = least_variance(steps, stated);
         let clean = |((channel, least), uneven): ((&[f64], f64), &[f64])| {
             if channel.is_empty() {
                 // Any forces do where none count.
@@ -303,9 +308,14 @@ impl PreparedSweep {
         let (lateral, normal) = (lateral?, normal?);
         let glitches = lateral.1 + normal.1;
         let forces = Force::new(lateral.0, normal.0);
-        let white = |sd: f64| Spectrum::white(modes, sd * sd);
-        let noise = match question.noise_sd {
-            Some(sd) => sd.map(white),
+        let left = forces.as_ref().map(|channel| modes.residual(channel));
+        let squares = left.map(|left| left.iter().map(|force| force * force).sum::<f64>());
+        if self.has_lateral && squares.lateral < QUIET * QUIET * squares.normal {
+            return Err(Cause::Channels);
+        }
+        let even = |power: f64| Spectrum::even(modes, power, power / question.correlation_length);
+        let noise = match stated {
+            Some(power) => power.map(even),
             None => (forces.as_ref().zip(steps))
                 .map(|(channel, step)| modes.noise(channel, step, question.is_white)),
         };

@@ -185,6 +185,7 @@ fn broken_sensors_are_seen_and_coarse_ones_pass() {
     assert!(is_saturated(&capped));
     let raised: Vec<f64> = channel.iter().map(|v| v.max(-1.0)).collect();
     assert!(is_saturated(&raised));
+    assert!(is_saturated(&[0.5; 161]) && !is_saturated(&[0.5; 3]) && !is_saturated(&[]));
     // A coarse converter shows one value most of the time, a stuck one nearly all of it.
     let most = |count: usize| -> Vec<f64> {
         let value = |at: usize| {
@@ -615,11 +616,12 @@ fn the_pairs_that_count_are_of_the_whole_bank() {
     assert_eq!(priors, [0.4, 0.4, 0.2]);
     // A sweep of the left half says nothing of an inclusion at the right, and something of the others.
     let half: Vec<f64> = (0..=64).map(|at| 1.25e-4 * f64::from(at) - 8e-3).collect();
-    let normal: Vec<f64> = noise(65, 9)
-        .iter()
-        .map(|noise| 1.0 + 0.02 * noise)
-        .collect();
-    let record = Record::new("half", &half, Force::new(&[0.0; 65], &normal)).unwrap();
+    let channel = |(level, trial)| -> Vec<f64> {
+        let noise = noise(65, trial).into_iter();
+        noise.map(|noise| level + 0.02 * noise).collect()
+    };
+    let forces = Force::new((0.0, 10), (1.0, 9)).map(channel);
+    let record = Record::new("half", &half, forces.as_deref()).unwrap();
     let sweep = at_place(&bank, &record, None);
     let (answer, _) = RobustQuestion::default()
         .locate(&bank, None, &[sweep])
@@ -911,6 +913,9 @@ fn a_record_of_one_channel_is_judged_as_if_the_other_had_infinite_noise() {
     let forces = bank.maps()[7].table().sweep(bank.depth(), &over).unwrap();
     let pairs = forces.normal.iter().zip(noise(81, 3));
     let normal: Vec<f64> = pairs.map(|(force, n)| force + 0.1 * n).collect();
+    // A force without noise would come from no sensor.
+    let pairs = forces.lateral.iter().zip(noise(81, 4));
+    let lateral: Vec<f64> = pairs.map(|(force, n)| force + 0.01 * n).collect();
     let judged = |lateral: &[f64], sd: f64| {
         let record = Record::new("sweep", &over, Force::new(lateral, &normal[..])).unwrap();
         let question = RobustQuestion {
@@ -921,7 +926,7 @@ fn a_record_of_one_channel_is_judged_as_if_the_other_had_infinite_noise() {
         question.locate(&bank, None, &[sweep]).unwrap()
     };
     let (one, place) = judged(&[], 0.1);
-    let (both, place_of_both) = judged(&forces.lateral, 1e6);
+    let (both, place_of_both) = judged(&lateral, 1e6);
     // An information of (1 N/1e6 N)² is lost, times the condition of the covariances.
     assert!(
         (one.theta - both.theta).abs() < 1e-6,
@@ -940,7 +945,7 @@ fn a_record_of_one_channel_is_judged_as_if_the_other_had_infinite_noise() {
         }
     );
     // What the lateral force would have said.
-    let (all, _) = judged(&forces.lateral, 0.1);
+    let (all, _) = judged(&lateral, 0.1);
     assert!(all.theta > one.theta + 1.0, "{} {}", all.theta, one.theta);
     let rows = one.rows(None);
     assert!(

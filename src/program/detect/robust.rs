@@ -134,15 +134,15 @@ fn question<'a>(
     known: &'a [Part],
 ) -> Result<RobustQuestion<'a>, CliError> {
     let noise = arguments.noise.noise(layout)?;
-    let longer = match noise.correlation {
-        Correlation::Known(length) => length.sqrt(),
-        Correlation::None | Correlation::OfRecord => 1.0,
-    };
     let default = RobustQuestion::default();
     Ok(RobustQuestion {
         known,
         is_zeroed: arguments.model.zeroed,
-        noise_sd: noise.sd.map(|sd| sd.map(|sd| sd * longer)),
+        noise_sd: noise.sd,
+        correlation_length: match noise.correlation {
+            Correlation::Known(length) => length,
+            Correlation::None | Correlation::OfRecord => 1.0,
+        },
         is_white: noise.correlation == Correlation::None,
         prior_h1: arguments.criterion.prior_h1,
         sure: arguments.model.sure.unwrap_or(default.sure),
