@@ -84,6 +84,7 @@ pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
     let mut watcher = Watcher::new(&bank, &question)?;
     let mut samples = LiveSamples::new("-", arguments.layout.get()?);
     let (mut answer, mut written) = (None, None::<(Instant, Option<Decision>)>);
+    let mut is_read = true;
     let (stop, lines) = (stop_on_signals()?, lines());
     while let Some(line) = next(&lines, &stop) {
         let line = line.map_err(CliError::refused("-: cannot be read"))?;
@@ -99,18 +100,20 @@ pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
         });
         if is_due {
             written = Some((Instant::now(), decision));
-            if !write(&found, None)? {
-                return Ok(());
-            }
+            is_read = write(&found, None)?;
         }
         answer = Some(found);
+        if !is_read {
+            break;
+        }
     }
     let Some(answer) = answer else {
         refuse!(
             "-: standard input has no samples; give a header and at least one row, or JSON objects"
         );
     };
-    let is_read = write(&answer, Some(&question.test))?;
+    // Without a reader, the figure of what came so far is still asked for.
+    let is_read = is_read && write(&answer, Some(&question.test))?;
     if let Some(path) = &arguments.figure {
         output::write(path, &coverage_figure(&watcher.places())?)?;
     }

@@ -79,6 +79,8 @@ pub struct Layout {
     columns: Vec<Stated>,
     /// Lines that are left out at the start of the file.
     pub skipped: usize,
+    /// The decimal mark, if it is known from other lines.
+    pub(crate) mark: Option<char>,
 }
 
 /// A column as the user states it: `position=Z_Position(mm)`, `normal=-AI1*500[mN]`.
@@ -123,7 +125,7 @@ impl FromStr for Layout {
         }
         Ok(Layout {
             columns,
-            skipped: 0,
+            ..Layout::default()
         })
     }
 }
@@ -134,9 +136,12 @@ impl FromStr for Layout {
 impl<'de> Deserialize<'de> for Layout {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Layout, D::Error> {
         let table = BTreeMap::<String, String>::deserialize(deserializer)?;
-        let list = table.iter().map(|(key, name)| format!("{key}=\"{name}\""));
-        let list = list.collect::<Vec<_>>().join(",");
-        list.parse().map_err(D::Error::custom)
+        let columns = table.iter().map(|(key, name)| format!("{key}={name}"));
+        let columns: Result<_, Refusal> = columns.map(|column| Stated::parse(&column)).collect();
+        Ok(Layout {
+            columns: columns.map_err(D::Error::custom)?,
+            ..Layout::default()
+        })
     }
 }
 
@@ -297,8 +302,8 @@ pub(super) fn find(header: &[&str], column: Column, layout: &Layout) -> Result<F
             return stated.find(header, names);
         }
     }
-    for by in [By::Name, By::Synonym, By::Unitless] {
-        for names in column {
+    for names in column {
+        for by in [By::Name, By::Synonym, By::Unitless] {
             let found = (0..).zip(header).filter_map(|(place, field)| {
                 let (name, power) = read(field, names, by)?;
                 Some(Found {
@@ -436,6 +441,9 @@ mod tests {
         // A name that is a number is a name first.
         let layout = "position=1[mm],normal=2[N]";
         assert_eq!(read("2,1\n3,4\n", layout), Ok([4e-3, 3.0]));
+        let rows = Rows::parse_as("2,1\n3,4\n", COLUMNS, "", &layout.parse().unwrap());
+        let note = "line 1, which holds numbers, is taken for the header";
+        assert!(rows.unwrap().notes.contains(&note.to_string()));
         // A name may end in a unit in square brackets, as the user's column may.
         let text = "pos (mm),t,Raw [mN]\n1,0.25,-2\n";
         for (layout, force) in [
@@ -457,7 +465,23 @@ mod tests {
             let layout = format!("{layout},position=pos");
             assert_eq!(read(text, &layout), Ok([1e-3, force]), "{layout}");
         }
-        // Without a word the position counts, and of the forces the one with a name.
+        // Without a word the position counts, however well the time is named, and of the forces the one with a name.
+        for (text, position) in [
+            ("time_s,X (mm),Load (N)\n1,2,-3\n", 2e-3),
+            ("Time,X,Load\ns,mm,N\n1,2,-3\n", 2e-3),
+            ("time_s,Load (N)\n1,-3\n", 1.0),
+        ] {
+            let rows = Rows::parse(text, COLUMNS, "").unwrap().rows;
+            assert_eq!(rows[0].1, [position, -3.0], "{text}");
+        }
+        // A unit that the name has, or that is the usual one, need not stand again below it.
+        for text in [
+            "pos_mm,Force\n,mN\n1,-3\n",
+            "pos,time_s,Force\nmm,,mN\n1,2,-3\n",
+        ] {
+            let rows = Rows::parse(text, COLUMNS, "").unwrap().rows;
+            assert_eq!(rows[0].1, [1e-3, -3e-3], "{text}");
+        }
         assert_eq!(
             Rows::parse(TEXT, COLUMNS, "").unwrap().rows[0].1,
             [1e-3, -3.0]

@@ -22,6 +22,10 @@ pub struct Rows<const N: usize> {
     pub rows: Vec<(usize, [f64; N])>,
     /// What a person should know of how the table was read.
     pub notes: Vec<String>,
+    /// Whether the line below the header gives the units.
+    pub(crate) has_units: bool,
+    /// The decimal mark of its numbers, if it is known.
+    pub(crate) mark: Option<char>,
 }
 
 impl<const N: usize> Rows<N> {
@@ -103,7 +107,7 @@ impl<const N: usize> Rows<N> {
             notes.push(format!("lines after the last row are not used: {footer}"));
         }
         // Where commas separate the fields, none is a decimal comma.
-        let mut mark = (header.separator == ',').then_some('.');
+        let mut mark = (header.separator == ',').then_some('.').or(layout.mark);
         let mut row = |&(line, row): &(usize, &str)| match header.numbers(row, &mut mark) {
             Ok(numbers) => Ok((line, numbers)),
             Err(refusal) => Err(Refusal::at(refusal, line)),
@@ -124,6 +128,8 @@ impl<const N: usize> Rows<N> {
                 .map(|found| found.map_or("", |found| found.name)),
             rows,
             notes,
+            has_units: header.has_units(),
+            mark,
         };
         let missing = first.map(|first| (missing.len(), first));
         Ok(Read { rows, missing })
@@ -253,6 +259,10 @@ impl<'a, const N: usize> Header<'a, N> {
         })
     }
 
+    fn has_units(&self) -> bool {
+        self.below > self.at + 1
+    }
+
     /// What a person should know of how the columns were found.
     fn notes(&self, lines: &[(usize, &str)]) -> Vec<String> {
         let mut notes = Vec::new();
@@ -262,7 +272,14 @@ impl<'a, const N: usize> Header<'a, N> {
                 "the header is line {line}: what is before it is not used"
             ));
         }
-        if self.below > self.at + 1 {
+        let is_number = |field: &&str| decimal(field, 0, &mut None).is_some();
+        if self.fields.iter().all(is_number) {
+            let line = lines[self.at].0;
+            notes.push(format!(
+                "line {line}, which holds numbers, is taken for the header"
+            ));
+        }
+        if self.has_units() {
             let line = lines[self.at + 1].0;
             notes.push(format!("line {line} gives the units"));
         }
@@ -357,7 +374,11 @@ fn in_units<const N: usize>(
     let mut has_unit = false;
     let pairs = found.iter_mut().flatten();
     for (found, column) in pairs.zip(columns.into_iter().flatten()) {
-        match found.in_unit(column, units.get(found.place)?) {
+        let unit = *units.get(found.place)?;
+        if unit.is_empty() && found.by != By::Unitless {
+            continue;
+        }
+        match found.in_unit(column, unit) {
             None if !found.has_stated_unit => return None,
             None => {}
             Some(other) => {

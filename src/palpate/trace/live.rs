@@ -32,8 +32,10 @@ pub struct LiveSamples {
     /// Lines at the start that are no samples.
     skipped: usize,
     line: usize,
-    /// The header of CSV.
+    /// The header of CSV, with the line of its units.
     header: Option<String>,
+    /// Whether the line below the header was read, which may give the units.
+    is_begun: bool,
     /// Whether the first sample has each of the columns.
     first: Option<[bool; 4]>,
 }
@@ -60,6 +62,7 @@ impl LiveSamples {
             layout,
             line: 0,
             header: None,
+            is_begun: false,
             first: None,
         }
     }
@@ -69,8 +72,8 @@ impl LiveSamples {
         refusal.at(self.line).in_file(&*self.file)
     }
 
-    /// The sample of the next line, with a lateral force and a depth if the header or the first object has them; nothing of a header, a
-    /// comment or a blank line.
+    /// The sample of the next line, with a lateral force and a depth if the header or the first object has them; nothing of a header, the
+    /// units below it, a comment or a blank line.
     ///
     /// # Errors
     /// A header or object that does not name the columns, a field that is no finite decimal number, text that is no JSON; with the line.
@@ -84,22 +87,36 @@ impl LiveSamples {
         }
         let read = match self.header.clone() {
             None if text.starts_with('{') => {
-                object(text).and_then(|[header, row]| self.row(&header, &row).map(Some))
+                object(text).and_then(|[header, row]| Ok(Some(self.row(&header, &row)?.0)))
             }
             None => {
                 self.header = Some(text.into());
                 self.row(text, "").map(|_| None)
             }
-            Some(header) => self.row(&header, text).map(Some),
+            Some(header) => self.row(&header, text).and_then(|(sample, has_units)| {
+                let is_of_units = has_units && !header.contains('\n');
+                let wrong = Refusal::state("a line of units", "give it below the header");
+                wrong.when(is_of_units && self.is_begun)?;
+                self.is_begun = true;
+                if is_of_units {
+                    self.header = Some(format!("{header}\n{text}"));
+                }
+                Ok((!is_of_units).then_some(sample))
+            }),
         };
         read.map_err(|refusal| self.refused(refusal))
     }
 
-    /// A row below a header.
-    fn row(&mut self, header: &str, row: &str) -> Result<LiveSample, Refusal> {
+    /// A row below a header, and whether it is one of units.
+    fn row(&mut self, header: &str, row: &str) -> Result<(LiveSample, bool), Refusal> {
         let text = format!("{header}\n{row}");
-        let read = Rows::parse_optional(&text, LIVE, REQUIRED, EXPECTED, &self.layout, true)?;
+        // What the first one lacked is no column of the others, whatever they hold there.
+        const NONE: Column = &[];
+        let has = self.first.unwrap_or([true; 4]);
+        let columns = std::array::from_fn(|at| if has[at] { LIVE[at] } else { NONE });
+        let read = Rows::parse_optional(&text, columns, REQUIRED, EXPECTED, &self.layout, true)?;
         let (table, there) = read;
+        self.layout.mark = table.mark;
         let first = *self.first.get_or_insert(there);
         // A sample without what the first one had is missing.
         let is_whole = first.iter().zip(there).all(|(had, has)| has || !had);
@@ -107,24 +124,29 @@ impl LiveSamples {
         let [position, normal, lateral, depth] =
             whole.map_or([f64::NAN; 4], |(_, numbers)| *numbers);
         let [.., has_lateral, has_depth] = first;
-        Ok(LiveSample {
+        let sample = LiveSample {
             position,
             depth: has_depth.then_some(depth),
             lateral: has_lateral.then_some(lateral),
             normal,
-        })
+        };
+        Ok((sample, table.has_units))
     }
 }
 
-/// An object as a header of its keys and a row of its values.
+/// An object as a header of its keys and a row of its values: text without the marks of CSV, lists and objects as a word.
 fn object(text: &str) -> Result<[String; 2], Refusal> {
     let object: Map<String, Value> = serde_json::from_str(text).map_err(|error| {
         let right = r#"give an object such as {"position_mm": -1, "normal_force_n": 1.5}"#;
         Refusal::state(crate::file::message(&error), right)
     })?;
-    let keys = object.keys().map(|key| format!("\"{key}\""));
+    let quoted = |text: &str| format!("\"{}\"", text.replace(['"', '\n', '\r'], " "));
+    let keys = object.keys().map(|key| quoted(key));
     let values = object.values().map(|value| match value {
         Value::Null => String::new(),
+        Value::String(text) => quoted(text),
+        Value::Array(_) => "[...]".into(),
+        Value::Object(_) => "{...}".into(),
         value => value.to_string(),
     });
     Ok([keys.collect::<Vec<_>>(), values.collect()].map(|fields| fields.join(";")))
@@ -168,7 +190,7 @@ mod tests {
             ],
             &[
                 r#"{"position_mm": -1, "lateral_force_n": 0.02, "normal_force_n": 1.5}"#,
-                r#"{"stamp": "12:01;7", "normal_force_mn": 1.6e3, "lateral_force_n": -3e-2, "position_m": 5e-4}"#,
+                r#"{"stamp": "12:01;7", "note \"": "5\" \n", "of": ["a;\"b"], "normal_force_mn": 1.6e3, "lateral_force_n": -3e-2, "position_m": 5e-4}"#,
             ],
         ];
         for text in texts {
@@ -190,8 +212,28 @@ mod tests {
         let more = [
             r#"{"position_mm": 2, "normal_force_n": 1}"#,
             r#"{"position_mm": 3, "depth_mm": 9, "lateral_force_n": 7, "normal_force_n": 4}"#,
+            r#"{"position_mm": 4, "depth_mm": null, "lateral_force_n": "off", "normal_force_n": 5}"#,
         ];
-        assert_eq!(read(&more).unwrap(), [[2e-3, 0.0, 1.0], [3e-3, 0.0, 4.0]]);
+        let samples = [[2e-3, 0.0, 1.0], [3e-3, 0.0, 4.0], [4e-3, 0.0, 5.0]];
+        assert_eq!(read(&more).unwrap(), samples);
+    }
+
+    // Verifies: CLI-182, MAP-041, MAP-047.
+    #[test]
+    fn units_below_the_header_and_the_decimal_mark_hold_for_all_lines() {
+        let lines = ["position_mm;Fz", "mm;mN", "0;1500", "1;1600,5"];
+        assert_eq!(
+            read(&lines).unwrap(),
+            [[0.0, 0.0, 1.5], [1e-3, 0.0, 1.6005]]
+        );
+        // Nothing but numbers stands below them.
+        let later = read(&["position_mm;Fz", "0;1", "mm;mN"]).unwrap_err();
+        assert!(later.starts_with("-:3: "), "{later}");
+        let other = read(&["position_mm;Fz", "0;1,5", "1;1.500"]).unwrap_err();
+        assert!(
+            other.starts_with("-:3: normal_force_n = \"1.500\""),
+            "{other}"
+        );
     }
 
     // Verifies: CLI-182.
@@ -242,7 +284,7 @@ mod tests {
             (&[r#"{"position_mm": 1}"#], "-:1: no column normal_force_n"),
             (
                 &[r#"{"position_mm": 1, "normal_force_n": [1]}"#],
-                "-:1: normal_force_n = \"[1]\", but must be",
+                "-:1: normal_force_n = \"[...]\", but must be",
             ),
             (&["{"], "-:1: "),
             (&["{}", ""], "-:1: no column position_mm"),
