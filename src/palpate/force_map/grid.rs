@@ -1,5 +1,7 @@
 //! Measured forces at jittered or scattered poses, put on a grid (`spec/force-map.md`).
 
+use nalgebra::{Matrix2, Vector2};
+
 use super::{ForceTable, Matrix};
 use crate::decimal::mm;
 use crate::force::Force;
@@ -22,6 +24,8 @@ type Sample = [f64; 4];
 
 /// Squares of distances below this, over those of the step, are none: samples on a line do not say what is beside it.
 const RANK: f64 = 1e-12;
+/// The square of a distance of a pose from the middle of its samples, over their variance, beyond which a slope is noise.
+const FARTHEST: f64 = 10.0;
 
 /// The forces at the poses of a grid with these `steps` of depth and lateral position, m: at each pose that of a plane through the samples
 /// less than a step away in both, with the weight (1 − |u|³)³ of each distance u over its step. Of the normal force alone unless the
@@ -152,7 +156,7 @@ fn at_pose(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Result<AtPose
         let force = |of: &Near<'_>| of.sample[2 + channel];
         let level = mean(&force);
         let along = |axis: usize| mean(&|of| about(of.place)[axis] * (force(of) - level));
-        let slopes = slopes(squares, [along(0), along(1)]);
+        let slopes = slopes(squares, middle, [along(0), along(1)]);
         let plane = |place: [f64; 2]| {
             let [depth, lateral] = about(place);
             level + slopes[0] * depth + slopes[1] * lateral
@@ -165,26 +169,21 @@ fn at_pose(samples: &[Sample], pose: [i64; 2], steps: [f64; 2]) -> Result<AtPose
     Ok(fit)
 }
 
-/// The slopes of least squares, the least ones if there are many: the solution of a symmetric matrix of two rows.
-fn slopes([depth, both, lateral]: [f64; 3], [along, across]: [f64; 2]) -> [f64; 2] {
-    let (trace, determinant) = (depth + lateral, depth * lateral - both * both);
-    let (slopes, over) = if determinant > RANK * trace * trace {
-        let slopes = [
-            lateral * along - both * across,
-            depth * across - both * along,
-        ];
-        (slopes, determinant)
-    } else if trace > RANK {
-        // Samples on a line: the slope along it.
-        let slopes = [
-            depth * along + both * across,
-            both * along + lateral * across,
-        ];
-        (slopes, trace * trace)
-    } else {
-        ([0.0; 2], 1.0)
-    };
-    slopes.map(|slope| slope / over)
+/// The slopes of least squares: the part of them along each principal axis of the samples, if these are spread over it, and the pose is not
+/// so far from their middle, in steps, that noise would be extrapolated.
+///
+/// Implements: MAP-080.
+fn slopes([depth, both, lateral]: [f64; 3], middle: [f64; 2], along: [f64; 2]) -> [f64; 2] {
+    let axes = Matrix2::new(depth, both, both, lateral).symmetric_eigen();
+    let [middle, along] = [middle, along].map(Vector2::from);
+    let mut slopes = Vector2::zeros();
+    for (spread, axis) in axes.eigenvalues.iter().zip(axes.eigenvectors.column_iter()) {
+        let distance = axis.dot(&middle);
+        if *spread > RANK && distance * distance <= FARTHEST * spread {
+            slopes += axis * (axis.dot(&along) / spread);
+        }
+    }
+    slopes.into()
 }
 
 #[cfg(test)]
@@ -263,6 +262,25 @@ mod tests {
             (one.residual.normal, one.residual.lateral),
             (found.residual.normal, None)
         );
+    }
+
+    // Verifies: MAP-080.
+    #[test]
+    fn the_jitter_of_a_depth_makes_no_slope_of_noise() {
+        // About 3.7 mm, 0.2 mm from a depth of the grid, on a jitter of 2 µm, and in noise of 0.01 N.
+        let noise = |k: u32, step: f64| f64::from(k) * step % 1.0 - 0.5;
+        let sample = |k: u32| {
+            let depth = 3.7e-3 + 4e-6 * noise(k, 0.7548776662);
+            let lateral = 4e-3 * noise(k, 0.5698402910);
+            let force = 400.0 * depth + 0.035 * noise(k, 0.4142135624);
+            [depth, lateral, force, 0.0]
+        };
+        let samples: Vec<_> = (0..400).map(sample).collect();
+        let found = gridded(&samples, false, [0.5e-3, 0.5e-3]).unwrap();
+        assert_eq!(found.table.depths(), [3.5e-3]);
+        for (.., force) in found.table.normal().entries() {
+            assert!((force - 1.48).abs() < 0.02, "{force}");
+        }
     }
 
     // Verifies: MAP-081. Through the means of each place there is a line; what the two samples half a step away leave of it counts once.
