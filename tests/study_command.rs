@@ -78,6 +78,10 @@ fn a_study_tells_bands_indices_and_failures() {
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let same: serde_json::Value = serde_json::from_str(&expected()[1]).unwrap();
     assert_eq!(json, same);
+    // A run that it does not fit is refused before anything is solved.
+    let refused = place.refused("run --study study.json --out run");
+    assert_has(&refused, "study.json: the study of the inputs has another");
+    assert!(!place.at("run").exists());
 }
 
 // Verifies: STU-021, STU-024, STU-026.

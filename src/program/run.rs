@@ -22,7 +22,9 @@ use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 use palpate::robust::{GelChanges, GelUncertainty};
 use palpate_paper::psychophysics::bridge::probe_depth;
-use palpate_paper::report::{DeformedMesh, FileNames, Run, figures, findings, html, summary_json};
+use palpate_paper::report::{
+    DeformedMesh, FileNames, Run, check_study, figures, findings, html, summary_json,
+};
 use palpate_paper::study::StudyResults;
 
 /// Arguments of `palpate run`.
@@ -61,6 +63,12 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let measured = measured.collect::<Result<_, _>>()?;
     let study = arguments.study.as_deref().map(StudyResults::read);
     let study = study.transpose()?;
+    if let (Some(study), Some(path)) = (&study, &arguments.study) {
+        let poses = (probe_depth(&config.depths).0, &config.laterals[..]);
+        let phantoms: Vec<_> = phantoms.iter().collect();
+        let checked = check_study(study, &phantoms, poses, &config.detection);
+        checked.map_err(CliError::refused(path.display()))?;
+    }
     let theories = match arguments.compare_theories {
         true => theories::phantoms(&config, &phantoms)?,
         false => Vec::new(),

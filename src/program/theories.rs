@@ -91,10 +91,11 @@ fn solve(config: &Config, phantoms: &[Phantom]) -> Result<Theory, CliError> {
     })
 }
 
-/// d ln F_n / d ln ν of the normal force at the probe depth and x = 0; from below where no phantom has the larger ratios.
+/// d ln F_n / d ln ν of the normal force at the probe depth and x = 0, `None` at the surface; from below where no phantom has the larger
+/// ratios.
 ///
 /// Implements: REP-090.
-fn poisson_leverage(config: &Config, model: &Model) -> Result<f64, FemError> {
+fn poisson_leverage(config: &Config, model: &Model) -> Result<Option<f64>, FemError> {
     let phantom = model.phantom();
     let (depth, _) = probe_depth(&config.depths);
     let lateral = 0.0;
@@ -115,11 +116,16 @@ fn poisson_leverage(config: &Config, model: &Model) -> Result<f64, FemError> {
         .filter(|of| of.poisson_ratio > 0.0)
         .fold(CHANGE, most);
     let less = force(&changed(1.0 - change)?)?;
+    if less == 0.0 {
+        return Ok(None);
+    }
     if let Ok(phantom) = changed(1.0 + change) {
         let more = force(&phantom)?;
-        return Ok((more - less) / (more + less) / change);
+        return Ok(Some((more - less) / (more + less) / change));
     }
     let [own, least] = [force(phantom)?, force(&changed(1.0 - 2.0 * change)?)?];
     // Of second order, as the difference of both sides.
-    Ok((3.0 * own - 4.0 * less + least) / (2.0 * change * own))
+    Ok(Some(
+        (3.0 * own - 4.0 * less + least) / (2.0 * change * own),
+    ))
 }

@@ -121,7 +121,7 @@ fn forces(level: Option<f64>, maps: &[MapFindings]) -> Vec<Option<Comparison>> {
             "§2",
             ("1.6 N, nominal", Value::ForceN, paper::FORCE_LEVEL),
             level,
-            "The paper does not say which element it used. Six-node triangles do not lock at ν = 0.49, and their 1.48 N hardly depends on \
+            "The paper does not say which element it used. Six-node triangles do not lock at ν = 0.49, and their force hardly depends on \
              the mesh. Elements that lock give more. The authors’ moduli are “roughly determined”, too.",
         ),
         row(

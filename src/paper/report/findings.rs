@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::comparison::{self, Comparison};
 use super::gamma::gamma;
-use super::inputs;
+use super::inputs::check_study;
 use super::maps::{MapFindings, ReferenceFindings, of_maps, of_reference};
 use super::people::bridge_to;
 use super::text::{millimetres, name_of_map};
@@ -64,7 +64,11 @@ pub fn findings(run: &Run) -> Result<Findings, Refusal> {
     let depths = run.reference.table().depths();
     let (probe_depth, is_quoted) = probe_depth(depths);
     let required_gamma = check(&run.settings).map_err(Refusal::because("settings"))?;
-    inputs::check(run, probe_depth)?;
+    if let Some(study) = &run.study {
+        let phantoms = run.reference_and_maps().filter_map(ForceMap::phantom);
+        let poses = (probe_depth, run.reference.table().laterals());
+        check_study(study, &phantoms.collect::<Vec<_>>(), poses, &run.settings)?;
+    }
     let is_computed = |map: &&ForceMap| map.certificate().is_some();
     if let Some(map) = run.measured.iter().find(is_computed) {
         let name = name_of_map(map);

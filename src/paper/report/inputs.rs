@@ -1,8 +1,9 @@
 //! What the uncertainty of the inputs does to the run's numbers: the results of a study beside them.
 
-use super::Run;
+use super::{Run, Settings};
 use crate::study::{Band, Conclusion, Kind, StudyResults};
 use palpate::force_map::{ForceMap, SAME_POSITION};
+use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 
 /// A share of the draws from which on a statement counts as one that the inputs do not change.
@@ -10,25 +11,32 @@ use palpate::refusal::Refusal;
 /// Implements: REP-083.
 const NEARLY_ALL: f64 = 0.95;
 
-/// Refuses a study of other phantoms, poses or settings than those of the run.
+/// Checks that a study is of the phantoms of a run, the reference first, and of its poses: the depth of the probe and the lateral
+/// positions, m.
+///
+/// # Errors
+/// What is another in the study.
 ///
 /// Implements: REP-004.
-pub(super) fn check(run: &Run, depth: f64) -> Result<(), Refusal> {
-    let Some(StudyResults { plan, .. }) = &run.study else {
-        return Ok(());
-    };
-    let own: Vec<_> = run.maps.iter().map(ForceMap::phantom).collect();
-    let other = plan.phantoms.iter().find(|of| !own.contains(&Some(*of)));
-    let what = if run.reference.phantom() != Some(&plan.reference) {
+pub fn check_study(
+    study: &StudyResults,
+    phantoms: &[&Phantom],
+    (depth, laterals): (f64, &[f64]),
+    settings: &Settings,
+) -> Result<(), Refusal> {
+    let plan = &study.plan;
+    let (reference, own) = phantoms.split_at(phantoms.len().min(1));
+    let other = plan.phantoms.iter().find(|of| !own.contains(of));
+    let what = if reference != [&plan.reference] {
         "reference".into()
     } else if let Some(other) = other {
         format!("phantom {:?}", other.name())
     } else if (plan.probe_depth - depth).abs() > SAME_POSITION {
         "depth of the probe".into()
-    } else if plan.laterals != run.reference.table().laterals() {
+    } else if plan.laterals != laterals {
         // γ is of all samples of the sweep.
         "list of lateral positions".into()
-    } else if plan.settings != run.settings {
+    } else if plan.settings != *settings {
         "noise, rate or prior".into()
     } else {
         return Ok(());
@@ -39,9 +47,12 @@ pub(super) fn check(run: &Run, depth: f64) -> Result<(), Refusal> {
     Err(Refusal::state(found, ""))
 }
 
-/// The band of a quantity of a phantom, if there is a study.
-pub(super) fn band(run: &Run, phantom: &str, kind: &Kind) -> Option<Band> {
-    run.study.as_ref()?.of(phantom, kind)?.band
+/// The band of a quantity of a map's phantom, if there is a study of it; another gel may have the same name.
+pub(super) fn band(run: &Run, map: &ForceMap, kind: &Kind) -> Option<Band> {
+    let (study, phantom) = run.study.as_ref().zip(map.phantom())?;
+    let mut phantoms = study.plan.all_phantoms();
+    phantoms.find(|of| *of == phantom)?;
+    study.of(phantom.name(), kind)?.band
 }
 
 /// What a study says of a statement.

@@ -73,6 +73,7 @@ pub use findings::{Findings, findings};
 pub use gamma::GammaByChannel;
 pub use hand::GammaOfHand;
 pub use html::html;
+pub use inputs::check_study;
 pub use maps::{Detection, MapFindings, Peak, ReferenceFindings, Threshold};
 pub use nuisances::{GammaBeside, GammaLeft};
 use people::normal_approximation;
@@ -124,7 +125,7 @@ pub struct Theory {
     /// The deformed mesh of one pose.
     pub deformed: DeformedMesh,
     /// d ln F_n / d ln ν of the normal force without inclusion at the probe depth and x = 0.
-    pub poisson_leverage: f64,
+    pub poisson_leverage: Option<f64>,
 }
 
 impl Run {

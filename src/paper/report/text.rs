@@ -135,6 +135,11 @@ pub(super) fn percents(Bounds { lower, upper }: &Bounds) -> String {
     format!("{lower} to {upper} %")
 }
 
+/// A number with one decimal.
+pub(super) fn tenths(value: f64) -> String {
+    fixed(value, 1)
+}
+
 /// A number in its format, or other words where there is none.
 pub(super) fn or(value: impl Borrow<Option<f64>>, none: &str, format: fn(f64) -> String) -> String {
     value.borrow().map_or(none.into(), format)

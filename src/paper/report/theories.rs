@@ -10,7 +10,7 @@ use super::{Settings, Theory, paper};
 use crate::psychophysics::AnswerTable;
 use crate::psychophysics::bridge::{ConventionFit, probe_depth};
 use palpate::detect::nuisance::dot;
-use palpate::force_map::ForceMap;
+use palpate::force_map::{ForceMap, SAME_POSITION};
 use palpate::phantom::{Phantom, Strain};
 use palpate::refusal::Refusal;
 use palpate::stats::normal;
@@ -30,7 +30,7 @@ pub struct TheoryFindings {
     /// The phantom without inclusion.
     pub reference: ReferenceFindings,
     /// d ln F_n / d ln ν of its normal force at x = 0.
-    pub poisson_leverage: f64,
+    pub poisson_leverage: Option<f64>,
     /// One for each map, in the order of the run.
     pub maps: Vec<MapFindings>,
     /// Each explanation of the answers to FEM playback; none without two of the paper's phantoms.
@@ -108,7 +108,7 @@ pub(super) fn findings(
 }
 
 /// The paper's name of a phantom, whatever its theory.
-fn name_of(phantom: &Phantom) -> Option<&'static str> {
+pub(super) fn name_of(phantom: &Phantom) -> Option<&'static str> {
     let plain = phantom.changed(|parts| {
         parts.strain = Strain::Small;
         parts.probe.friction = 0.0;
@@ -118,6 +118,13 @@ fn name_of(phantom: &Phantom) -> Option<&'static str> {
 
 fn explanations(theory: &Theory) -> Result<Vec<Explanation>, Refusal> {
     if theory.reference.phantom().and_then(name_of) != Some("none") {
+        return Ok(Vec::new());
+    }
+    // Half a sweep is the whole one only of a gel that is its own mirror image, and with friction none is.
+    let is_half = theory.reference.table().laterals()[0] > -SAME_POSITION;
+    let own_image = |map: &ForceMap| map.phantom().is_some_and(Phantom::is_symmetric);
+    let mut maps = std::iter::once(&theory.reference).chain(&theory.maps);
+    if is_half && !maps.all(own_image) {
         return Ok(Vec::new());
     }
     let table = AnswerTable::paper()?;
@@ -186,6 +193,15 @@ fn template_use(
         false_alarm,
         serves: kept >= LEAST_KEPT && false_alarm <= MOST_ALARMS * asked,
     }))
+}
+
+impl TheoryFindings {
+    /// The template that has a signal at the most depths, which head the table.
+    pub(super) fn longest_template(&self) -> Option<&TemplateUse> {
+        self.templates
+            .iter()
+            .max_by_key(|template| template.at.len())
+    }
 }
 
 impl Theory {

@@ -21,11 +21,12 @@ const STEPS: u32 = 20;
 /// What of the sweep counts.
 pub const STATISTICS: [Statistic; 2] = [Statistic::Peak, Statistic::MatchedFilter];
 
-/// The half sweeps, m, that lie on these positions, two of them at the least.
+/// The half sweeps, m, both of whose ends lie on these positions, two of which they hold at the least.
 ///
 /// Implements: PSY-085.
 pub fn half_sweeps(laterals: &[f64]) -> Vec<f64> {
-    let widest = laterals.iter().map(|x| x.abs()).fold(0.0, f64::max);
+    let reach = |sign: f64| laterals.iter().map(|x| sign * x).fold(0.0, f64::max);
+    let widest = f64::min(reach(-1.0), reach(1.0));
     let fits = |half: &f64| {
         let inside = laterals.iter().filter(|&&x| is_within(x, *half));
         *half <= widest + SAME_POSITION && inside.count() > 1

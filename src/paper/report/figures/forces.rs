@@ -2,6 +2,7 @@
 
 use super::bands::band_ends;
 use super::plan::{Plan, Words, over};
+use crate::report::inputs;
 use crate::report::maps::signal;
 use crate::report::text::{fixed, joined, millimetres, name_of_map, shortened};
 use crate::report::{Findings, MapFindings, Run, Topic, paper};
@@ -14,11 +15,11 @@ use palpate::refusal::Refusal;
 /// The signals, if there are any, and the forces of every map: computed ones, then the measured ones.
 ///
 /// # Errors
-/// A map does not fit the reference, or has no lateral forces.
+/// A map does not fit the reference.
 ///
 /// Implements: REP-031.
 pub fn figures(run: &Run, found: &Findings) -> Result<Vec<Plan>, Refusal> {
-    let plan = |id, map: Option<&ForceMap>, words, panels: [Panel; 2]| {
+    let plan = |id, map: Option<&ForceMap>, words, panels: Vec<Panel>| {
         let picture = over("Lateral position of the probe x (mm)", panels);
         Plan {
             name: map.map(name_of_map).unwrap_or_default(),
@@ -27,18 +28,18 @@ pub fn figures(run: &Run, found: &Findings) -> Result<Vec<Plan>, Refusal> {
     };
     let mut plans = Vec::new();
     if !run.maps.is_empty() {
-        let panels = signals(run, found)?;
+        let panels = signals(run, found)?.into();
         plans.push(plan("signals", None, signal_words(found), panels));
     }
     let depth = run.study.as_ref().map(|study| study.plan.probe_depth);
     for map in run.reference_and_maps() {
         let bands = bands(run, map);
         let words = force_words(map, depth.filter(|_| !bands[0].is_empty()));
-        let panels = forces(map, bands)?;
+        let panels = forces(map, bands);
         plans.push(plan("figure-5", Some(map), words, panels));
     }
     for map in &run.measured {
-        let panels = forces(map, Default::default())?;
+        let panels = forces(map, Default::default());
         plans.push(plan("figure-7", Some(map), measured_words(map), panels));
     }
     Ok(plans)
@@ -72,9 +73,9 @@ pub fn points(laterals: &[f64], forces: &[f64]) -> Vec<(f64, f64)> {
     laterals.zip(forces.iter().copied()).collect()
 }
 
-/// Figure 5: both forces of a map, one curve for each depth of the probe, and the ends of a band of the normal and of the lateral
-/// force.
-fn forces(map: &ForceMap, [normal, lateral]: [Vec<Line>; 2]) -> Result<[Panel; 2], Refusal> {
+/// Figure 5: the forces of a map that has both or the normal one, one curve for each depth of the probe, and the ends of a band of the
+/// normal and of the lateral force.
+fn forces(map: &ForceMap, [normal, lateral]: [Vec<Line>; 2]) -> Vec<Panel> {
     let table = map.table();
     let (depths, laterals) = (table.depths(), table.laterals());
     let curves = |matrix: &Matrix, band: Vec<Line>| {
@@ -85,33 +86,27 @@ fn forces(map: &ForceMap, [normal, lateral]: [Vec<Line>; 2]) -> Result<[Panel; 2
         });
         curves.chain(band).collect()
     };
-    let undrawn = format!("map {:?} cannot be drawn", name_of_map(map));
-    let forces = table.both().map_err(Refusal::because(undrawn))?;
-    let curves = [
-        curves(forces.normal, normal),
-        curves(forces.lateral, lateral),
-    ];
+    let lateral = table.lateral().map(|forces| curves(forces, lateral));
+    let channels = 1 + usize::from(lateral.is_some());
+    let curves = [curves(table.normal(), normal), lateral.unwrap_or_default()];
     let headings = ["Normal force (N)", "Lateral force (N)"];
-    Ok(panels(laterals, headings, curves))
+    let panels = panels(laterals, headings, curves).into_iter();
+    panels.take(channels).collect()
 }
 
 /// The ends of the bands of the normal and of the lateral force that a study has for the phantom of a map.
 ///
 /// Implements: REP-081.
 fn bands(run: &Run, map: &ForceMap) -> [Vec<Line>; 2] {
-    let Some((study, phantom)) = run.study.as_ref().zip(map.phantom()) else {
+    let Some(study) = &run.study else {
         return Default::default();
     };
-    // Another gel may have the same name.
-    if !study.plan.all_phantoms().any(|of| of == phantom) {
-        return Default::default();
-    }
     let kinds: [fn(f64) -> Kind; 2] = [
         |lateral_m| Kind::NormalForceN { lateral_m },
         |lateral_m| Kind::LateralForceN { lateral_m },
     ];
     kinds.map(|kind| {
-        let at = |&x: &f64| Some((1e3 * x, study.of(phantom.name(), &kind(x))?.band?));
+        let at = |&x: &f64| Some((1e3 * x, inputs::band(run, map, &kind(x))?));
         let bands: Vec<_> = study.plan.laterals.iter().filter_map(at).collect();
         band_ends("", &bands, 1.0)
     })
@@ -224,7 +219,11 @@ fn measured_words(map: &ForceMap) -> Words {
              available."
         ),
         format!(
-            "Two line charts of measured normal and lateral force against lateral position, {} curves each.",
+            "{} against lateral position, {} curves each.",
+            match map.table().lateral() {
+                Some(_) => "Two line charts of measured normal and lateral force",
+                None => "A line chart of measured normal force",
+            },
             map.table().depths().len()
         ),
     ]

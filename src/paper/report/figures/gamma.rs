@@ -8,6 +8,7 @@ use crate::report::{Findings, GammaBeside, MapFindings, Run, Topic};
 use crate::study::{Band, Kind};
 use palpate::chart::style::{GREY, INK, PALETTE, VERMILION};
 use palpate::chart::{Line, Panel, round_range};
+use palpate::force_map::ForceMap;
 
 /// The figure, if the top of an inclusion is known.
 ///
@@ -18,7 +19,9 @@ pub fn figure(run: &Run, found: &Findings) -> Option<Plan> {
     let mut maps: Vec<_> = maps.collect();
     maps.sort_by(|a, b| a.0.total_cmp(&b.0));
     let beside = &maps.first()?.1.gamma_left.beside;
-    let bars: Vec<_> = maps.iter().filter_map(|of| bar(run, of.0, of.1)).collect();
+    let pairs = run.maps.iter().zip(&found.maps);
+    let bars = pairs.filter_map(|(map, found)| bar(run, map, 1e3 * found.inclusion_depth_m?));
+    let bars: Vec<_> = bars.collect();
     let words = words(run, found, &maps, !bars.is_empty());
     let panel = panel(&maps, beside, found.required_gamma, bars);
     let picture = over(DEPTH, [panel]);
@@ -28,8 +31,8 @@ pub fn figure(run: &Run, found: &Findings) -> Option<Plan> {
 /// The band of γ that a study has for a map, upright beside its depth, mm.
 ///
 /// Implements: REP-081.
-fn bar(run: &Run, depth: f64, map: &MapFindings) -> Option<Line> {
-    let Band { lower, upper, .. } = inputs::band(run, &map.name, &Kind::Gamma)?;
+fn bar(run: &Run, map: &ForceMap, depth: f64) -> Option<Line> {
+    let Band { lower, upper, .. } = inputs::band(run, map, &Kind::Gamma)?;
     let x = depth + 0.15;
     let ends = vec![(x, lower.value), (x, upper.value)];
     Some(Line::new(VERMILION, ends).wide(3.0))

@@ -13,6 +13,7 @@ use crate::report::{Findings, Run, Topic, inputs, normal_approximation, paper};
 use crate::study::Kind;
 use palpate::chart::style::{GREEN, GREY, INK, PALETTE, VERMILION};
 use palpate::chart::{Line, Panel};
+use palpate::force_map::ForceMap;
 
 /// What the x axis of all charts over the inclusions shows.
 pub const DEPTH: &str = "Depth of the inclusion (mm)";
@@ -167,11 +168,12 @@ fn subjects(condition: &ConditionAnalysis, predicted: Vec<Line>) -> Panel {
 /// Implements: REP-081.
 fn predicted(run: &Run, found: &Findings, condition: &ConditionAnalysis) -> Vec<Line> {
     let is_paper_depth = found.probe_depth_note.is_none();
-    let is_there = |name: &str| found.maps.iter().any(|of| of.paper_phantom == Some(name));
     let inclusions = condition.inclusions.iter();
-    let inclusions = inclusions.filter(|of| is_paper_depth && is_there(&of.name));
+    let inclusions = inclusions.filter(|_| is_paper_depth);
     let bands = inclusions.filter_map(|of| {
-        let band = inputs::band(run, &of.name, &Kind::TwoAfcByPeak)?;
+        let is_own = |map: &&ForceMap| map.phantom().and_then(paper::name_of) == Some(&of.name);
+        let map = run.maps.iter().find(is_own)?;
+        let band = inputs::band(run, map, &Kind::TwoAfcByPeak)?;
         Some((1e3 * of.depth_m, band))
     });
     band_ends("predicted, ", &bands.collect::<Vec<_>>(), 100.0)

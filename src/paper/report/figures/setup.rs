@@ -6,7 +6,7 @@ use plotters::style::{RGBColor, WHITE};
 
 use super::plan::{Plan, Words, over};
 use crate::report::text::{joined, millimetres, shortened, trimmed};
-use crate::report::{Run, Topic, paper};
+use crate::report::{Run, Topic, paper, theories};
 use palpate::chart::{CHORDS, Line, Panel, to_mm};
 use palpate::fem::Pose;
 use palpate::fem::mesh::Region;
@@ -170,7 +170,7 @@ fn supported(phantom: &Phantom) -> String {
         Support::Free => "free",
     };
     match (phantom.well().walls, phantom.well().floor) {
-        _ if paper::name_of(phantom).is_some() => "wax block: gel and skin fixed, u = 0".into(),
+        _ if theories::name_of(phantom).is_some() => "wax block: gel and skin fixed, u = 0".into(),
         (walls, floor) if walls == floor => format!("walls and floor {}", name(walls)),
         (walls, floor) => format!("walls {}, floor {}", name(walls), name(floor)),
     }
@@ -214,7 +214,7 @@ fn words(phantom: &Phantom, name: &str, key: &[Line]) -> Words {
     let inclusions = phantom.inclusions().iter();
     let inclusions = first(inclusions.map(|of| material("inclusion", &of.material)));
     let materials = joined(layers.into_iter().chain(inclusions), "; ");
-    let of_paper = match paper::name_of(phantom) {
+    let of_paper = match theories::name_of(phantom) {
         Some(_) => {
             " it gives the same sizes in words, but not how thick the wax is, which plays no part. The paper's inclusion is a latex \
              tube; it is computed as a solid disc, as the paper's own Figure 6 shows it."

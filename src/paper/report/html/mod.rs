@@ -13,7 +13,6 @@ use super::{
     Comparison, Figure, Findings, MapFindings, Quality, Run, Settings, TheoryFindings, Topic,
     Value, paper, text,
 };
-use crate::psychophysics::bridge::WeightRange;
 use crate::psychophysics::noise::SUMS;
 use crate::study::{Band, Change, Conclusion, Kind, StudyResults};
 
@@ -88,14 +87,31 @@ impl Page<'_> {
         text::extremes(maps.map(|map| map.peak_normal.force_n.abs()))
     }
 
-    /// Whether the whole level of the normal force explains the answers to FEM playback worst over every sweep, and whether they
-    /// reject it over every one.
-    fn felt(&self) -> Option<(bool, bool)> {
+    /// What the answers to FEM playback say of the whole level of the normal force, over the sweeps that the maps hold.
+    ///
+    /// Implements: PSY-085.
+    fn felt(&self) -> Option<String> {
         let bridge = self.found.bridge.as_ref()?;
         let weights = &bridge.conditions.get(paper::FEM_PLAYBACK)?.weights;
-        let is_worst = weights.iter().all(WeightRange::level_fits_worst);
-        let is_rejected = weights.iter().all(|of| of.left.upper < 1.0);
-        (!weights.is_empty()).then_some((is_worst, is_rejected))
+        let [from, to] =
+            [weights.first()?, weights.last()?].map(|of| text::millimetres(of.half_sweep_m));
+        let range = format!("±{from} to ±{to} mm");
+        let worst = "explained worst by the whole level of the normal force, whose peak the paper's noise estimate rests on";
+        let is_worst = weights.iter().filter(|of| of.level_fits_worst()).count();
+        Some(if is_worst == 0 {
+            format!("are not {worst}, over any sweep of {range}")
+        } else if is_worst < weights.len() {
+            format!(
+                "do not tell whether subjects feel the level of the normal force or its change along the sweep: over sweeps of {range}, \
+                 that depends on how far they swept"
+            )
+        } else if weights.iter().all(|of| of.left.upper < 1.0) {
+            format!("are {worst}, over every sweep of {range}, and reject it")
+        } else {
+            format!(
+                "are {worst}, over every sweep of {range}, but do not reject it over all of them"
+            )
+        })
     }
 
     /// The noise that explains the answers to FEM playback at 6.6 mm by the peak signal: ours beside the paper's.

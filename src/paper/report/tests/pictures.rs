@@ -4,7 +4,9 @@ use super::findings;
 use super::run::*;
 use crate::psychophysics::Bounds;
 use crate::report::{Run, normal_approximation, text};
+use crate::tests::measured;
 use palpate::fem::mesh::Region;
+use palpate::force_map::ForceTable;
 use palpate::phantom::{Phantom, PhantomParts};
 use palpate_asserts::assert_has;
 
@@ -385,6 +387,19 @@ fn a_measured_map_is_figure_7_and_a_computed_one_is_refused() {
     let seventh = figures.find(|figure| figure.file_name.starts_with("figure-7"));
     assert_has(&seventh.unwrap().caption, "those data are not available");
     assert_has(&seventh.unwrap().alt, "lateral position, 2 curves each");
+    // A sensor of one axis has one panel.
+    let text = "depth_mm,lateral_mm,normal_force_n\n1,0,0.5\n1,5,0.5\n2,0,1\n2,5,1\n";
+    let table = ForceTable::from_csv(text, "gel.csv").unwrap();
+    run.measured = vec![measured(None, table)];
+    let figures = made(&run).figures;
+    let mut figures = figures.iter();
+    let seventh = figures.find(|figure| figure.file_name.starts_with("figure-7"));
+    let seventh = seventh.unwrap();
+    assert_has(
+        &seventh.alt,
+        "A line chart of measured normal force against|2 curves each",
+    );
+    assert!(seventh.svg.contains("Normal force (N)") && !seventh.svg.contains("Lateral force (N)"));
     run.measured = vec![computed_map("8.6", 0.5)];
     let error = findings(&run).unwrap_err().to_string();
     assert_has(&error, "\"8.6\"|computed");

@@ -110,9 +110,10 @@ fn only_sweeps_that_the_maps_have_are_judged() {
     };
     assert_eq!(of(1, 5), [3.0, 4.0]);
     assert!(of(1, 3).is_empty());
-    // Over −5 … 20 mm in steps of 5 mm, ±3 and ±4 mm hold one position.
+    // Over −5 … 20 mm in steps of 5 mm, ±3 and ±4 mm hold one position, and beyond ±5 mm there is one side.
     let laterals = [-5e-3, 0.0, 5e-3, 10e-3, 15e-3, 20e-3];
-    assert_eq!(half_sweeps(&laterals)[0], 5e-3);
+    assert_eq!(half_sweeps(&laterals), [5e-3]);
+    assert!(half_sweeps(&laterals[1..]).is_empty());
 }
 
 /// All answers right: no deviance, and none expected.
