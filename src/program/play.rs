@@ -10,7 +10,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::error::refuse;
-use super::output::{print, read, say, shows_progress, tell, write};
+use super::output::{note, print, read, say, shows_progress, tell, write};
 use super::platform::{PROMISE, raise_priority, stop_on_signals};
 use super::playback::{DeviceArguments, limits, loaded_map};
 use super::{CliError, Format};
@@ -132,6 +132,14 @@ fn session(
         cycles: played.cycles,
     };
     let path = arguments.record.as_ref();
+    let (kept, all) = (recording.cycles.len() as u64, played.counters.cycles);
+    if let Some(path) = path.filter(|_| kept < all) {
+        let faster = "the device reported more often than it says";
+        note(
+            path.display(),
+            &format!("holds the first {kept} of {all} cycles: {faster}"),
+        );
+    }
     let recorded = path.map_or(Ok(()), |path| write(path, &recording.to_text()));
     let held_up = played.held_up.filter(|_| !is_simulated);
     let summary = Summary {
@@ -238,7 +246,8 @@ fn replay(arguments: &PlayArguments, file: &Path) -> Result<(), CliError> {
     } else {
         loaded_map(&arguments.map)?
     };
-    let failed = |error| CliError::Check(format!("{}: {error}", file.display()));
+    let alike = "give --map, --scale and --device as they were when it was recorded";
+    let failed = |error| CliError::Check(format!("{}: {error}; {alike}", file.display()));
     let cycles = recording.replay(loaded.table()).map_err(failed)?;
     print(&format!(
         "{cycles} cycles, all forces the same to the bit\n"

@@ -66,16 +66,18 @@ fn of_half(error: FemError) -> FemError {
 
 /// Most nodes that a mesh may have: its factor fills some 3 GB.
 const MOST_NODES: f64 = 500_000.0;
+/// Most nodes of its surface, which has a dense matrix: 0.8 GB.
+const MOST_SURFACE_NODES: usize = 5_000;
 
 impl Mesh {
     /// Meshes a valid phantom with the mesh size `size`, m: at [`MESH_SIZE`](super::MESH_SIZE) elements have the sizes of
     /// `spec/fem.md`, any other scales them all.
     ///
     /// # Errors
-    /// [`FemError::Refused`] if the size is not positive and finite, if the mesh would have more than 500 000 nodes, and if a
-    /// triangle comes out too flat, of an axisymmetric phantom in its right half.
+    /// [`FemError::Refused`] if the size is not positive and finite, if the mesh would have more than 500 000 nodes, or 5 000 on the
+    /// surface, and if a triangle comes out too flat, of an axisymmetric phantom in its right half.
     ///
-    /// Implements: FEM-017.
+    /// Implements: FEM-017, FEM-037.
     pub fn new(phantom: &Phantom, size: f64) -> Result<Mesh, FemError> {
         let (field, _) = Mesh::forecast(phantom, size)?;
         let mut symmetric = phantom.is_symmetric();
@@ -96,6 +98,13 @@ impl Mesh {
             mesh.mirror(phantom);
         }
         mesh.find_borders(phantom);
+        let nodes = mesh.surface.len();
+        let asked = mm(size);
+        let found = format!(
+            "mesh size {asked} mm makes {nodes} nodes on the surface, allowed: at most {MOST_SURFACE_NODES}"
+        );
+        let remedy = "a larger size makes fewer";
+        Refusal::state(found, remedy).when(nodes > MOST_SURFACE_NODES)?;
         Ok(mesh)
     }
 

@@ -87,18 +87,19 @@ impl Motion {
         let first = samples[0];
         let mut handles = target(first).map(|place| Handle::at(hand.mechanics(), place));
         let mut places = Vec::with_capacity(samples.len());
-        let (mut step, start) = (0_u64, first - SETTLE);
+        let mut time = first - SETTLE;
         for &sample in samples {
-            while start + step as f64 * STEP < sample {
-                let time = start + step as f64 * STEP;
+            // The last step ends at the sample, but for rounding.
+            while sample - time > 1e-6 * STEP {
+                let step = STEP.min(sample - time);
                 let place = handles.map(|handle| handle.position);
                 let [lateral, normal] = elastic(gel, place)?;
                 let forces = [lateral, -normal];
                 let wanted = target(time);
                 for (axis, handle) in handles.iter_mut().enumerate() {
-                    handle.advance(STEP, wanted[axis], forces[axis]);
+                    handle.advance(step, wanted[axis], forces[axis]);
                 }
-                step += 1;
+                time += step;
             }
             places.push(handles.map(|handle| handle.position));
         }

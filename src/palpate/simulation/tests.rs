@@ -194,15 +194,32 @@ fn a_hand_is_pushed_out_of_the_gel_until_it_balances_it() {
         follows.motion.hand = Some(Hand { mass, ..hand });
         assert!(follows.record(1).is_err());
     }
-    // Pushed to the side as far as the map goes.
-    let weak = Hand {
-        stiffness: 10.0,
-        ..hand
-    };
-    let soft = spring(4000.0);
-    let mut leaves = simulation(&soft, &path);
-    leaves.motion.hand = Some(weak);
-    assert!(leaves.record(1).is_err() || leaves.record(1).unwrap().depths[0] < 1e-3);
+    // Pushed to the side, beyond the end of the map at 10 mm.
+    let text = "time_s,position_mm,depth_mm\n0,9.9,4\n2,9.9,4\n";
+    let path = Path::from_csv(text, "path.csv", 10.0).unwrap();
+    let mut leaves = simulation(&gel, &path);
+    leaves.motion.hand = Some(hand);
+    let error = leaves.record(1).unwrap_err().to_string();
+    assert!(error.contains("outside the map"), "{error}");
+}
+
+// Verifies: SIM-020.
+#[test]
+fn a_hand_is_where_it_is_at_the_time_of_each_sample() {
+    let gel = spring(400.0);
+    let text = "time_s,position_mm,depth_mm\n0,0,0\n0.9,9,0\n";
+    let path = Path::from_csv(text, "path.csv", 60.0).unwrap();
+    let mut moved = simulation(&gel, &path);
+    moved.motion.hand = Some(Hand {
+        mass: 0.05,
+        damping: 5.0,
+        stiffness: 500.0,
+    });
+    let found = moved.record(1).unwrap();
+    // After 0.4 s it follows at 10 mm/s: a sample 0.1 ms late would be 1 µm off.
+    for three in found.positions[24..].windows(3) {
+        assert_near(three[2] - three[1], three[1] - three[0], 1e-7);
+    }
 }
 
 /// Where a handle of 0.05 kg on 500 N/m is after 0.1 s, from 10 mm away, with a damping, in steps of `step`.

@@ -168,6 +168,28 @@ fn sizes_without_a_mesh_are_refused() {
     assert!(said.ends_with(remedy), "{said}");
 }
 
+// Verifies: FEM-037.
+#[test]
+fn a_surface_of_too_many_nodes_is_refused() {
+    // Elements of 0.16 mm at the surface: 3125 of them, with two nodes each.
+    let wide = builtin("none")
+        .changed(|parts| parts.well.width = 0.5)
+        .unwrap();
+    let said = Mesh::new(&wide, 0.4e-3).unwrap_err().to_string();
+    let (_, makes) = said.split_once("mesh size 0.4 mm makes ").expect(&said);
+    let (nodes, rest) = makes.split_once(' ').unwrap();
+    assert!(
+        (5_001.0..10_000.0).contains(&nodes.parse::<f64>().unwrap()),
+        "{said}"
+    );
+    assert_eq!(
+        rest,
+        "nodes on the surface, allowed: at most 5000; a larger size makes fewer"
+    );
+    let mesh = Mesh::new(&wide, 1e-3).unwrap();
+    assert!(mesh.surface.len() > 1_000);
+}
+
 // Verifies: FEM-017.
 #[test]
 fn a_phantom_that_no_sound_triangle_follows_is_refused_with_the_place() {
