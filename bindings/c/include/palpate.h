@@ -692,7 +692,7 @@ PalpateError palpate_axis_locate(const float *knots_m,
 
 // One cycle of the servo loop: from `state`, the newest sample (null if none came) and a `PALPATE_SERVO_REQUEST_…` to the next state and the
 // command. A refused call commands no force, from which the force of the next call grows, unless `command` is null or overlaps something;
-// it leaves the rest of the state.
+// it leaves the rest of the state, and all of a state that overlaps something.
 //
 // Total and bounded for every bit pattern of state and sample: a mode that does not exist counts as memory overwritten, a request
 // that does not exist disarms.

@@ -250,7 +250,7 @@ pub struct ServoCommand {
 
 /// One cycle of the servo loop: from `state`, the newest sample (null if none came) and a `PALPATE_SERVO_REQUEST_…` to the next state and the
 /// command. A refused call commands no force, from which the force of the next call grows, unless `command` is null or overlaps something;
-/// it leaves the rest of the state.
+/// it leaves the rest of the state, and all of a state that overlaps something.
 ///
 /// Total and bounded for every bit pattern of state and sample: a mode that does not exist counts as memory overwritten, a request
 /// that does not exist disarms.
@@ -268,17 +268,19 @@ pub unsafe extern "C" fn palpate_step(
         playing: 0,
         reserved: [0; 3],
     };
-    let apart = check_apart(
-        &[bytes(command, 1), bytes(state, 1)],
-        &[bytes(prepared, 1), bytes(limits, 1), bytes(sample, 1)],
-    );
-    if let Err(error) = apart {
+    let inputs = || [bytes(prepared, 1), bytes(limits, 1), bytes(sample, 1)];
+    let [of_prepared, of_limits, of_sample] = inputs();
+    let others = [of_prepared, of_limits, of_sample, bytes(state, 1)];
+    if let Err(error) = check_apart(&[bytes(command, 1)], &others) {
         return error;
     }
     // First, so that a call that is refused below leaves no old force.
     let given = unsafe { give(command, || Ok(NONE)) };
     if given != Error::Ok {
         return given;
+    }
+    if let Err(error) = check_apart(&[bytes(state, 1)], &inputs()) {
+        return error;
     }
     let cycle = || {
         let table = unsafe { table(prepared) }?;

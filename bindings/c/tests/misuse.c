@@ -150,6 +150,10 @@ static void servo(void) {
     expect_true("the rest of the state stays", memcmp(&before, &state, sizeof state) == 0);
     expect("no state", palpate_step(&table, &limits, &sample, 0, NULL, &command), PALPATE_ERROR_NULL_POINTER);
     expect("state over command", palpate_step(&table, &limits, &sample, 0, &state, (PalpateServoCommand *)&state), PALPATE_ERROR_OVERLAP);
+    command.playing = 1;
+    command.force.normal = 1.0f;
+    expect("state over sample", palpate_step(&table, &limits, (const PalpateServoSample *)&state, 0, &state, &command), PALPATE_ERROR_OVERLAP);
+    expect_true("no force beside it", command.playing == 0 && command.force.normal == 0.0f);
     expect("no table", palpate_step(NULL, &limits, &sample, 0, &state, &command), PALPATE_ERROR_NULL_POINTER);
     expect("no command", palpate_step(&table, &limits, &sample, 0, &state, NULL), PALPATE_ERROR_NULL_POINTER);
 

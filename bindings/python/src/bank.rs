@@ -148,7 +148,7 @@ fn record(
     let positions = over(bank, positions_mm)?;
     let forces = finite_forces("forces_n", forces_n)?;
     let forces = forces.as_ref().map(Vec::as_slice);
-    let depths = depths_mm.map(|depths| list("depths_mm", depths, -3));
+    let depths = depths_mm.map(|depths| lengths("depths_mm", depths));
     let record = match depths.transpose()? {
         None if bank.probe_depths().len() > 1 => {
             let found = format!(
@@ -388,9 +388,9 @@ impl Bank {
             known: &known,
             is_zeroed: zeroed,
             noise_sd: noise_sd_n.map(|sd| pair("noise_sd_n", sd)).transpose()?,
-            is_white: false,
             prior_h1,
             sure,
+            ..RobustQuestion::default()
         };
         let found = py.detach(|| -> PyResult<_> {
             let reference = self.bank.reference();

@@ -145,18 +145,29 @@ fn masked_array(py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
     py.import("numpy.ma")?.getattr("MaskedArray")
 }
 
-/// Whether `values` are a masked array, or a list with one in it: NumPy would make numbers of what is masked.
-fn has_mask<'py>(values: &Bound<'py, PyAny>, masked: &Bound<'py, PyAny>) -> PyResult<bool> {
+/// Whether `values` are a masked array, or a list with one in it, down to so many `levels`: NumPy would make numbers of what is masked.
+fn has_mask<'py>(
+    values: &Bound<'py, PyAny>,
+    masked: &Bound<'py, PyAny>,
+    levels: u32,
+) -> PyResult<bool> {
     if !values.is_instance_of::<PyList>() && !values.is_instance_of::<PyTuple>() {
         return values.is_instance(masked);
     }
+    // NumPy makes no numbers of a list that is deeper, or within itself.
+    if levels == 0 {
+        return Ok(false);
+    }
     for value in values.try_iter()? {
-        if has_mask(&value?, masked)? {
+        if has_mask(&value?, masked, levels - 1)? {
             return Ok(true);
         }
     }
     Ok(false)
 }
+
+/// Most axes of an array of NumPy.
+const MOST_AXES: u32 = 64;
 
 /// What NumPy makes of `values` as 64-bit floats in C order: the array itself where it is that already.
 ///
@@ -166,7 +177,7 @@ pub fn floats<'py>(
     values: &Bound<'py, PyAny>,
 ) -> PyResult<PyReadonlyArrayDyn<'py, f64>> {
     let numpy = values.py().import("numpy")?;
-    let masked = has_mask(values, &masked_array(values.py())?)?;
+    let masked = has_mask(values, &masked_array(values.py())?, MOST_AXES)?;
     let kind: String = numpy
         .call_method1("asarray", (values,))
         .and_then(|array| array.getattr("dtype")?.getattr("kind")?.extract())
@@ -406,6 +417,11 @@ pub fn json(value: &Bound<PyAny>) -> PyResult<String> {
                 format!("a {found} is no argument; give numbers, texts or arrays of them");
             return Err(PyTypeError::new_err(message));
         }
+        // A list of numbers that Python does not have would be one of arrays again.
+        let array = match &*kind {
+            "f" => array.call_method1("astype", ("f8",))?,
+            _ => array,
+        };
         array.call_method0("tolist").map(Bound::unbind)
     })?;
     let options = PyDict::new(py);

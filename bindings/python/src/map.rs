@@ -11,8 +11,8 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::classes::{ForceMap, Phantom};
 use crate::convert::{
-    Any, array, array_in_unit, axis, channels, each, floats, html, in_unit, lengths, python,
-    refused, remade, scaled, si, wrong_shape,
+    Any, array, array_in_unit, axis, channels, doubt_metres, each, floats, html, in_unit, lengths,
+    python, refused, remade, scaled, si, wrong_shape,
 };
 
 /// The columns that a notebook shows at most.
@@ -210,9 +210,11 @@ impl ForceMap {
     )]
     fn force<'py>(
         &self,
+        py: Python<'py>,
         depth_mm: Any<'_, 'py>,
         lateral_mm: Any<'_, 'py>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        doubt_metres(py, "depth_mm", floats("depth_mm", depth_mm)?.as_slice()?)?;
         let poses = [depth_mm, lateral_mm];
         let lateral = self.component(poses, |force| force.lateral)?;
         Ok((lateral, self.component(poses, |force| force.normal)?))

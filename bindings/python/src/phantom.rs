@@ -285,6 +285,7 @@ impl Phantom {
         mesh_mm: f64,
         contact: &str,
     ) -> PyResult<()> {
+        doubt_metres(py, "depth_mm", &[depth_mm])?;
         let (depth, lateral) = (
             si("depth_mm", depth_mm, -3)?,
             si("lateral_mm", lateral_mm, -3)?,

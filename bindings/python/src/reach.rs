@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use serde_json::{Map, Value, json};
 
 use crate::bank::{Bank, chosen, over};
-use crate::convert::{Any, Names, in_unit, list, pair, python, refused};
+use crate::convert::{Any, Names, in_unit, lengths, pair, python, refused};
 
 /// How deep the inclusions of a bank may lie, and how small they may be, to be found in a sweep: what palpate reach states, at the position of
 /// the bank nearest to 0, in white noise of a known level.
@@ -93,7 +93,10 @@ fn sweep(bank: &Bank, positions_mm: Option<Any>, depths_mm: Option<Any>) -> PyRe
         }
         (Some(positions), None) => Record::planned(&over(&bank.bank, positions)?, &[]),
         (Some(positions), Some(depths)) => {
-            let depths = list("depths_mm", depths, -3)?;
+            let depths = lengths("depths_mm", depths)?;
+            if depths.is_empty() {
+                return Err(refused("depths_mm is empty; give one for each position"));
+            }
             Record::planned(&over(&bank.bank, positions)?, &depths)
         }
     };

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 
 use crate::classes::ForceMap;
-use crate::convert::{in_unit, refused, si};
+use crate::convert::{doubt_metres, in_unit, refused, si};
 
 /// A finite number of the kernel's, from mm or as it is.
 fn single(name: &str, value: f64, power: i32) -> PyResult<f32> {
@@ -33,7 +33,8 @@ impl ServoTable {
     /// The force of ForceMap.force as the kernel computes it in single precision. What the kernel plays beyond the map, step says.
     #[doc = sections!(depth_mm, lateral_mm; "(float, float)" = "Lateral and normal force, N."; "A pose beyond the map.")]
     // Implements: PYT-040.
-    fn force(&self, depth_mm: f64, lateral_mm: f64) -> PyResult<(f32, f32)> {
+    fn force(&self, py: Python<'_>, depth_mm: f64, lateral_mm: f64) -> PyResult<(f32, f32)> {
+        doubt_metres(py, "depth_mm", &[depth_mm])?;
         let depth = single("depth_mm", depth_mm, -3)?;
         let lateral = single("lateral_mm", lateral_mm, -3)?;
         let [d, x] =

@@ -143,6 +143,7 @@ def test_questions_that_make_no_sense_are_refused(bank):
         ((x, forces), {"prior_h1": 1.5}),
         ((x, forces), {"noise_sd_n": -1}),
         ((x, forces), {"noise_sd_n": math.nan}),
+        ((x, forces), {"depth_tolerance_mm": -0.3}),
     ):
         with pytest.raises(palpate.Refused):
             bank.locate(*arguments, **options)
@@ -150,6 +151,8 @@ def test_questions_that_make_no_sense_are_refused(bank):
     for options in ({"offsets_mm": [math.nan]}, {"depths_mm": [-1]}, {"diameters_mm": []}, {"mesh_mm": 0}):
         with pytest.raises(palpate.Refused):
             palpate.Bank.build(phantom, 4, [-4, 0, 4], **options)
+    with pytest.raises(palpate.Refused, match="depths_mm is empty"):
+        palpate.reach(bank, 0.1, positions_mm=x, depths_mm=[])
     with pytest.raises(palpate.Refused, match="0 inclusions"):
         palpate.Bank.build(palpate.Phantom("none"), 4, [0])
 

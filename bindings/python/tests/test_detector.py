@@ -99,6 +99,22 @@ def test_any_array_will_do():
     assert palpate.theta(observed[:0], f0, f1, 0.1).shape == (0,)
 
 
+def test_a_list_within_itself_and_one_too_deep_are_no_numbers():
+    within, deep = [], 1.0
+    within.append(within)
+    for _ in range(100_000):
+        deep = [deep]
+    for wrong in (within, deep):
+        with pytest.raises(TypeError, match="must be real numbers"):
+            palpate.two_afc(wrong)
+
+
+def test_the_oracle_takes_the_numbers_of_numpy():
+    expected = palpate.ask("two_afc", gamma=1.0)
+    for kind in (np.longdouble, np.float32, np.int64):
+        assert palpate.ask("two_afc", gamma=kind(1)) == expected
+
+
 @pytest.mark.parametrize("wrong", [math.nan, math.inf, -math.inf])
 def test_no_number_that_is_not_finite_passes(wrong):
     observed, f0, f1 = records(5000, 41)

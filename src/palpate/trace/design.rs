@@ -2,6 +2,7 @@
 
 use super::question::{Question, Unknown};
 use super::{Record, refused};
+use crate::decimal::mm;
 use crate::detect::DetectError;
 use crate::detect::nuisance::{DEPENDENT, Nuisances, Rank, SubspaceDetector};
 use crate::force::Force;
@@ -74,6 +75,12 @@ impl Design {
         record: &Record,
     ) -> Result<(), Refusal> {
         let (depth, tolerance) = (question.depth, question.depth_tolerance);
+        let wrong = Refusal::value(
+            "depth_tolerance_mm",
+            mm(tolerance),
+            "a length of at least 0 mm",
+        );
+        wrong.when(!(0.0..f64::INFINITY).contains(&tolerance))?;
         if !question.is_unknown(Unknown::Depth) && tolerance > 0.0 {
             let slope = slope(record, map, depth, expected)?;
             self.depth_errors
