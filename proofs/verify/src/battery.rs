@@ -23,6 +23,8 @@ pub(crate) const GROUPS: &[(&str, &str, &[&str])] = groups! {
     "feedback_noise_" ["DET-040", "DET-041"] "Noise with feedback is whitened."
     "moving_average_" ["DET-040", "DET-041"] "Noise of a moving average is whitened."
     "generator_" ["DET-111", "DET-110"] "Deviates are standard normal, with their tails, and independent."
+    "position_error_of_a_cut_signal" ["DET-050", "DET-053"]
+        "Where the signal leaves the record, the place has the mean and the spread of sums over what was observed."
     "position_error" ["DET-053", "DET-054"] "Position errors meet the bound of Cramér and Rao until the signal is too weak."
     "nuisance_t_" ["NUI-001", "NUI-003", "NUI-016"]
         "T beside offsets, drifts and a gain of any size is normal with standard deviation 1."
@@ -36,8 +38,8 @@ pub(crate) const GROUPS: &[(&str, &str, &[&str])] = groups! {
         "The posterior of a bank is calibrated: ranks and intervals of the place, and the probability of an inclusion."
     "robust_" ["ROB-031", "ROB-032"] "The posterior over classes of disturbance is calibrated, where the record is of one of them."
     "sequential_" ["SEQ-001", "SEQ-010", "SEQ-012"] "A sequential test keeps its rates of error, also on a record that is too short."
-    "mixture_" ["DET-070", "DET-080"] "Mixtures of depths have their false alarms and tails."
-    "weber_" ["DET-070", "DET-080"] "Noise in proportion to the force has its false alarms and tails."
+    "mixture_" ["DET-070"] "Mixtures of depths have their false alarms."
+    "weber_" ["DET-080"] "Noise in proportion to the force has its tails."
 };
 
 fn group(name: &str) -> (&'static str, &'static [&'static str]) {

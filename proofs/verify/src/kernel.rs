@@ -35,8 +35,8 @@ pub const CHECKS: &[Check] = checks! {
         "The force in the device's counts is the nearest whole number, within ±32767, for every f32.",
         EVERY_INPUT;
     "kernel.blend" ["SRV-010", "SRV-011", "SRV-013"] => blends,
-        "A blend of two forces lies between them for every fraction from 0 to 1, is each of them at its end, and is at most \
-         three times as large from −1 to 2.",
+        "A blend of −100 and 100, and one of 0.1 and 0.1, lies between them for every fraction from 0 to 1, is each of them at its \
+         end, and is at most three times as large from −1 to 2.",
         EVERY_INPUT;
     "kernel.release" ["SRV-031"] => release,
         "Every force up to the ceiling is released to 0 within 17 cycles of the slowest release.",

@@ -36,7 +36,7 @@ pub const CHECKS: &[Check<Judge>] = checks! {
          below 10, and beyond the limits of χ² the step at which the program ends its search for them. Fixed in 0.2.0.";
     "program.refusals" ["CLI-048", "CLI-049", "PHA-030", "TRC-075"] => decisions::refusals,
         "Of a record that cannot be judged, of maps that do not differ and of a gel that nothing holds, palpate says so and \
-         prints no decision and no number.",
+         prints neither a decision nor a probability of an inclusion.",
         "None: each case is refused or not. Fixed in 0.2.0.";
 };
 

@@ -64,6 +64,14 @@ pub fn group(text: &str) -> Result<Group, String> {
     let stated = [&read.group, &read.source, &read.generator_version];
     let is_stated = !stated.contains(&&String::new());
     ensure!(is_stated, "group, source or generator_version is empty");
+    let mut names = read.flags.keys().chain([&read.group]);
+    let wrong = names.find(|name| !is_name(name)).cloned();
+    drop(names);
+    if let Some(name) = wrong {
+        return Err(format!(
+            "the name {name:?} must have small letters, digits, _ and - alone"
+        ));
+    }
     let cases = (1..).zip(&read.cases).map(|(number, text)| {
         case(text.get(), &read).map_err(|message| {
             let value: Value = serde_json::from_str(text.get()).unwrap_or_default();
@@ -98,7 +106,7 @@ fn case(text: &str, file: &GroupText) -> Result<Case, String> {
     let question = match (text.args.take(), text.line.take()) {
         (Some(args), None) => Question::Arguments(args),
         (None, Some(line)) => {
-            ensure!(!line.contains('\n'), "line must be one line");
+            ensure!(!line.contains(['\n', '\r']), "line must be one line");
             Question::Line(line)
         }
         _ => return Err("a case needs either args or line".into()),
@@ -107,6 +115,19 @@ fn case(text: &str, file: &GroupText) -> Result<Case, String> {
     ensure!(
         !file.op.is_empty() || (is_line && text.error.is_some()),
         "the group has no op, so that every case must be a line with an error"
+    );
+    ensure!(
+        is_name(&text.id),
+        "an id has small letters, digits, _ and - alone"
+    );
+    let of_values = text.bits.len() + text.tolerance.len() + text.condition.len();
+    let other = match text.ok {
+        Some(_) => text.lenient.len(),
+        None => of_values,
+    };
+    ensure!(
+        other == 0,
+        "lenient stands beside error alone, and bits, tolerance and condition beside ok"
     );
     let expected = match (text.ok.take(), text.error.take()) {
         (Some(ok), None) => Expected::Values(values(ok, &text, &file.tolerance)?),
@@ -117,7 +138,8 @@ fn case(text: &str, file: &GroupText) -> Result<Case, String> {
         _ => return Err("a case needs either ok or error".into()),
     };
     if let Some(u) = text.roundoff {
-        ensure!((0.0..1.0).contains(&u), "roundoff = {u} is not from 0 to 1");
+        let is_between = u > 0.0 && u < 1.0;
+        ensure!(is_between, "roundoff = {u} is not above 0 and below 1");
     }
     for flag in &text.flags {
         let is_known = file.flags.contains_key(flag);
@@ -142,6 +164,13 @@ fn case(text: &str, file: &GroupText) -> Result<Case, String> {
     })
 }
 
+/// Whether a text can be the name of a group, a flag or a case in a table and in a file of another format.
+fn is_name(text: &str) -> bool {
+    let is_in_names =
+        |of: u8| of.is_ascii_lowercase() || of.is_ascii_digit() || b"_-".contains(&of);
+    !text.is_empty() && text.bytes().all(is_in_names)
+}
+
 /// The class of an answer to a question that must be refused with this code.
 ///
 /// Implements: VEC-006, ORA-058.
@@ -161,10 +190,11 @@ fn values(
     tolerances: &BTreeMap<String, Tolerance>,
 ) -> Result<Vec<Wanted>, String> {
     ensure!(!ok.is_empty(), "ok is empty");
-    for key in text.tolerance.keys().chain(text.condition.keys()) {
+    let of_keys = text.tolerance.keys().chain(text.condition.keys());
+    for key in of_keys.chain(text.bits.keys()) {
         ensure!(
             ok.contains_key(key),
-            "tolerance or condition for {key:?}, which is no key of the answer"
+            "bits, tolerance or condition for {key:?}, which is no key of the answer"
         );
     }
     let wanted = |(key, value): (String, Value)| {

@@ -62,8 +62,20 @@ fn found(program: &Path) -> PathBuf {
     let folders = folders.iter().flat_map(std::env::split_paths);
     let mut candidates = folders.map(|folder| folder.join(program));
     candidates
-        .find(|candidate| candidate.is_file())
+        .find(|candidate| is_program(candidate))
         .unwrap_or_else(|| program.into())
+}
+
+/// Whether the system runs a file; it goes on to the next folder where it does not.
+fn is_program(path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let of = path.metadata();
+        of.is_ok_and(|of| of.is_file() && of.permissions().mode() & 0o111 != 0)
+    }
+    #[cfg(not(unix))]
+    path.is_file()
 }
 
 /// A file with its SHA-256, if it can be read.

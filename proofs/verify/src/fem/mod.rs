@@ -101,8 +101,8 @@ pub const CHECKS: &[Check] = checks! {
          independent program found.",
         "Half a unit of the last digit that an independent program printed, 1.48 N and 0.31 N. Fixed in 0.1.0.";
     "fem.certificates" ["FEM-008", "FEM-009", "FEM-014", "FEM-013", "FEM-026"] => paper::certificates,
-        "At 15 poses of each of the paper's five phantoms the linear solves leave less than their limit, no node of the \
-         surface is inside the probe, and the forces are mirror-symmetric; the bands say how far the forces may be from those \
+        "At 15 poses of each of the paper's five phantoms the linear solves leave less than their limit, no contact \
+         point of the surface is inside the probe, and the forces are mirror-symmetric; the bands say how far the forces may be from those \
          of an infinitely fine mesh.",
         "FEM-008 and FEM-009 state the limits of residual and penetration. Bands are told. Fixed in 0.1.0.";
 };

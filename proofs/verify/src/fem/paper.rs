@@ -12,7 +12,7 @@ const LATERALS: [f64; 5] = [-10e-3, -3e-3, 0.0, 3e-3, 10e-3];
 
 /// The largest relative residual of a linear solve (FEM-008).
 const RESIDUAL: f64 = 1e-8;
-/// How far a node of the surface may be inside the probe, m (FEM-009).
+/// How far a contact point of the surface may be inside the probe, m (FEM-009).
 const PENETRATION: f64 = 1e-12;
 
 fn model(name: &str) -> Measured<Model> {
