@@ -6,12 +6,12 @@
 mod copy;
 #[path = "defects/list.rs"]
 mod list;
-#[path = "defects/night.rs"]
-mod night;
 #[path = "defects/suite.rs"]
 mod suite;
 #[path = "defects/switch.rs"]
 mod switch;
+#[path = "defects/trial.rs"]
+mod trial;
 
 use std::fs;
 use std::path::Path;
