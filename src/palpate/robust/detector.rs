@@ -156,11 +156,14 @@ impl<'a> RobustDetector<'a> {
             return Ok(answer);
         };
         self.conclude(&found, &noise, &mut answer)?;
-        let is_turned = answer.decision == Some(Decision::NoInclusion)
-            && self.is_likelier_turned(&cleaned, level, &noise, &found);
-        if is_turned || self.is_contradicted(&answer, [&record, &noise])? {
-            answer.decision = None;
-            answer.causes.push(Cause::Channels);
+        let has_lateral = self.sweeps.iter().any(|sweep| sweep.has_lateral);
+        if let Some(decision) = answer.decision.filter(|_| has_lateral) {
+            let is_turned = decision == Decision::NoInclusion
+                && self.is_likelier_turned(&cleaned, level, &noise, &found);
+            if is_turned || self.is_contradicted(decision, [&record, &noise])? {
+                answer.decision = None;
+                answer.causes.push(Cause::Channels);
+            }
         }
         answer.explanation = self.explanation(cleaned, level, [&record, &noise], &answer);
         if self.is_exchanged {
@@ -295,7 +298,7 @@ impl<'a> RobustDetector<'a> {
     /// Implements: ROB-009.
     fn is_contradicted(
         &self,
-        answer: &RobustAnswer,
+        decision: Decision,
         [record, noise]: [&DVector<f64>; 2],
     ) -> Result<bool, Refusal> {
         let modes = self.sweeps.iter().map(|sweep| sweep.modes.count());
@@ -303,9 +306,6 @@ impl<'a> RobustDetector<'a> {
         let is_normal: Vec<bool> = is_normal.collect();
         let rows = (0..self.counted.len()).filter(|&row| is_normal[self.counted[row]]);
         let rows: Vec<usize> = rows.collect();
-        let Some(decision) = answer.decision.filter(|_| rows.len() < record.len()) else {
-            return Ok(false);
-        };
         let (classes, signals, shape) = of_rows(&rows, &self.weighted, &self.signals, &self.shape);
         let [record, noise] = [record, noise].map(|of| of.select_rows(&rows));
         let Some(found) = evidence(&record, &noise, &classes, &signals, &shape) else {
