@@ -10,18 +10,18 @@ mod paths;
 use std::collections::BTreeMap;
 
 use families::{DEPTH, Ends, GELS, Happens, MOTIONS, nothing, plain};
-use palpate::bank::{Bank, BankPlan};
+use palpate::bank::{Bank, BankPlan, BankSearch};
 use palpate::detect::Decision;
 use palpate::fem::{Contact, Model};
 use palpate::force::Force;
-use palpate::force_map::{ForceMap, ForceTable};
+use palpate::force_map::{ForceMap, ForceTable, Hypotheses};
 use palpate::phantom::{Phantom, PhantomParts};
 use palpate::robust::{
     BankHypotheses, GelChanges, GelUncertainty, RobustAnswer, RobustDetector, RobustPlace,
     RobustQuestion, RobustSweep,
 };
 use palpate::stats::random::{Generator, uniform};
-use palpate::trace::{Cause, Record};
+use palpate::trace::{Cause, Correlation, Criterion, Noise, Question, Record, Unknown};
 
 const SAMPLES: usize = 161;
 /// The depth of the disc in each gel, m; 0 without one.
@@ -182,6 +182,24 @@ fn detectors(bank: &Bank) -> [RobustDetector<'static>; 2] {
     })
 }
 
+/// What the exact model is asked of a sweep in noise that is stated or not.
+fn exact_question(noise_sd: Option<Force<f64>>) -> Question<'static> {
+    use Unknown::{Drift, Gain, Offset, Variance};
+    let unknown = &[Offset, Drift, Gain, Variance];
+    Question {
+        depth: DEPTH,
+        depth_tolerance: 0.3e-3,
+        is_zeroed: false,
+        unknown: &unknown[..3 + usize::from(noise_sd.is_none())],
+        noise: Noise {
+            sd: noise_sd,
+            correlation: Correlation::OfRecord,
+        },
+        criterion: Criterion::MaximumAPosteriori,
+        prior_h1: 0.5,
+    }
+}
+
 /// Counts of the answers inclusion, no inclusion, cannot be judged.
 type Counts = [u64; 3];
 
@@ -320,16 +338,22 @@ fn records_of_a_broken_sensor_are_not_judged() {
     }
 }
 
+/// Lateral forces of the other sign, in another unit, and of a channel that holds its value.
+const WRONG: [fn(f64) -> f64; 3] = [|force| -force, |force| 1e-3 * force, |_| 0.5];
+
+/// The bank's map of the disc 4.6 mm deep.
+fn disc_of(bank: &Bank) -> &ForceMap {
+    let is_disc = |map: &usize| bank.point(*map)[..2] == [0.0, 4.6e-3];
+    &bank.maps()[(0..bank.maps().len()).find(is_disc).unwrap()]
+}
+
 // Verifies: ROB-001, ROB-009.
 #[test]
 fn a_lateral_force_that_is_not_what_it_is_said_to_be_hides_no_inclusion() {
     let bank = bank();
-    let is_disc = |map: &usize| bank.point(*map)[..2] == [0.0, 4.6e-3];
-    let map = (0..bank.maps().len()).find(is_disc).unwrap();
-    let table = at_depth(&bank.maps()[map]);
-    let wrong: [fn(f64) -> f64; 3] = [|force| -force, |force| 1e-3 * force, |_| 0.5];
+    let table = at_depth(disc_of(&bank));
     let detectors = detectors(&bank);
-    for (stream, wrong) in (1100..).zip(wrong) {
+    for (stream, wrong) in (1100..).zip(WRONG) {
         let mut seen = 0;
         for (detector, sd) in detectors.iter().flat_map(|of| [(of, 0.02), (of, 0.1)]) {
             let records = (0..10).map(|trial| {
@@ -344,6 +368,49 @@ fn a_lateral_force_that_is_not_what_it_is_said_to_be_hides_no_inclusion() {
         }
         // With the bank a force of the other sign is too weak to tell.
         assert!(seen > 0, "{stream}");
+    }
+}
+
+// Verifies: TRC-077.
+#[test]
+fn nor_does_it_from_the_exact_model() {
+    let bank = bank();
+    let (with, without) = (disc_of(&bank), bank.reference());
+    let [table, gel] = [with, without].map(at_depth);
+    let hypotheses = Hypotheses::of_tables(without.table(), with.table()).unwrap();
+    let question = exact_question(None);
+    let search = BankSearch {
+        question,
+        bank: &bank,
+        prior: None,
+        simulations: None,
+    };
+    let judged = |table: &ForceTable, wrong: fn(f64) -> f64, stream: u64, trial: u64| {
+        let [lateral, normal] = record(table, (plain, nothing), 0.05, stream, trial);
+        let lateral: Vec<f64> = lateral.into_iter().map(wrong).collect();
+        let record = Record::new("sweep", &positions(), Force::new(&lateral, &normal)).unwrap();
+        let by_maps = question
+            .judge(hypotheses, &record)
+            .map(|of| (of.decision, of.causes));
+        let by_bank = search.locate(&record).map(|of| (of.decision, of.causes));
+        [by_maps, by_bank]
+    };
+    for (stream, wrong) in (1200..).zip(WRONG) {
+        let answers = (0..10).flat_map(|trial| judged(&table, wrong, stream, trial));
+        // A channel that holds its value is refused.
+        let answers: Vec<_> = answers.flatten().collect();
+        let is_none = |of: &&(Option<Decision>, _)| of.0 == Some(Decision::NoInclusion);
+        assert_eq!(answers.iter().find(is_none), None, "{stream}");
+        let seen = answers
+            .iter()
+            .filter(|of| of.1 == [Cause::Channels])
+            .count();
+        assert_eq!(seen > 0, stream < 1202, "{stream}");
+    }
+    // Where nothing is hidden, all is answered.
+    let answers = (0..10).flat_map(|trial| judged(&gel, |force| force, 1210, trial));
+    for answer in answers {
+        assert_eq!(answer.unwrap(), (Some(Decision::NoInclusion), vec![]));
     }
 }
 

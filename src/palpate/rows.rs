@@ -7,7 +7,6 @@ use crate::bank::{Bank, Location, Parameter};
 use crate::detect::Decision;
 use crate::detect::nuisance::{SubspaceTest, Threshold};
 use crate::force::Force;
-use crate::force_map::SAME_POSITION;
 use crate::refusal::Refusal;
 use crate::robust::{Class, PlaceInterval, RobustAnswer, RobustPlace};
 use crate::trace::{Cause, Fit, Judgement};
@@ -344,18 +343,14 @@ impl Location {
     ///
     /// Implements: CLI-153.
     pub fn interval(&self, bank: &Bank, axis: usize) -> Result<Option<PlaceInterval>, Refusal> {
-        let &[first, .., last] = &bank.axes()[axis][..] else {
+        if bank.axes()[axis].len() == 1 {
             return Ok(None);
-        };
-        let estimate = self.place.estimate[axis];
-        let bounds = self.place.interval(axis, CREDIBLE)?;
-        // Where the likelihood still rises at an end of the bank, that is no end of the interval; near it the likeliest place may lie
-        // where the tail is.
-        let is_within = |end: f64| (end - estimate).abs() > SAME_POSITION;
+        }
+        let [lower, upper] = self.place.ends(axis, CREDIBLE)?;
         Ok(Some(PlaceInterval {
-            estimate,
-            lower: is_within(first).then_some(bounds.lower.min(estimate)),
-            upper: is_within(last).then_some(bounds.upper.max(estimate)),
+            estimate: self.place.estimate[axis],
+            lower,
+            upper,
         }))
     }
 

@@ -88,12 +88,11 @@ impl BankArguments {
         let lists = [&plan.positions, &plan.depths, &plan.diameters, &plan.moduli];
         // Lists have 10⁴ entries at most: no overflow.
         let inclusions = lists.map(|list| list.len() as f64).iter().product::<f64>();
-        let laterals = self.laterals.len();
-        let poses = laterals * self.probe_depths.len();
+        let poses = self.laterals.len() * self.probe_depths.len();
         let most = MOST_FORCES / (poses + PER_MAP);
         if inclusions > most as f64 {
             refuse!(
-                "{inclusions} inclusions are too many; at most {most} are possible with {laterals} lateral positions"
+                "{inclusions} inclusions are too many; at most {most} are possible with {poses} poses of the probe"
             );
         }
         Ok(plan)

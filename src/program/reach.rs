@@ -19,6 +19,7 @@ use palpate::force::Force;
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 use palpate::robust::{GelChanges, GelUncertainty};
+use palpate::text;
 use palpate::trace::{Record, Unknown, in_words};
 
 /// Arguments of `palpate reach`.
@@ -148,6 +149,11 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     let bank = Bank::read(&arguments.bank)?;
     let sweep = match arguments.path.path()? {
         Some(path) => path.sweep()?,
+        None if bank.probe_depths().len() > 1 => {
+            refuse!(
+                "the bank has several depths of the probe; give the sweep, by --depths-mm or --path"
+            )
+        }
         None => bank.sweep(arguments.samples.map(|samples| samples as usize))?,
     };
     let asked = arguments.asked(&bank, &sweep)?;

@@ -182,4 +182,12 @@ fn an_interval_is_open_where_the_bank_ends() {
     let table = place().run(&format!("{asked} --known offset,drift,gain,depth,variance"));
     let table = text(&table.stdout).to_string();
     assert_has(&table, "3.600, 95 % interval from |; the bank ends there");
+    place().run(&format!(
+        "{asked} --known offset,drift,gain,depth,variance --figure open.svg"
+    ));
+    let figure = std::fs::read_to_string(place().at("open.svg")).unwrap();
+    let (_, words) = figure.split_once("Depth of the inclusion: ").unwrap();
+    let interval = words.split(" mm").nth(1).unwrap();
+    let is_open = interval.starts_with(", with 95 % probability from 3.");
+    assert!(is_open && !interval.contains(" to "), "{interval}");
 }

@@ -18,6 +18,25 @@ fn answer(arguments: &str) -> (Value, Option<i32>) {
     (answer.expect(&said), output.status.code())
 }
 
+// Verifies: ROB-003.
+#[test]
+fn a_good_sweep_does_not_vouch_for_a_sensor_in_air() {
+    let [reference, _] = maps(place());
+    let sound = sweep(reference.table());
+    let air: Vec<_> = sound.iter().map(|[x, ..]| [*x, 0.0, 0.0]).collect();
+    write_trace(place(), "aloft.csv", &air, 11);
+    for more in [
+        "",
+        "--reference-sweep without.csv",
+        "without.csv --together",
+    ] {
+        let asked = format!("aloft.csv {more} {MAPS} --depth-mm 3 --known gel,support");
+        let (found, code) = answer(&asked);
+        let causes = &found["causes"];
+        assert_eq!((causes, code), (&json!(["no_contact"]), Some(3)), "{more}");
+    }
+}
+
 // Verifies: ROB-012.
 #[test]
 fn slow_noise_of_a_blank_sweep_counts_more_and_is_told_as_it_is() {

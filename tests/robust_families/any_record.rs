@@ -5,7 +5,7 @@ use std::thread;
 
 use palpate::force_map::Hypotheses;
 use palpate::robust::Part;
-use palpate::trace::{Correlation, Criterion, Noise, Question, Unknown};
+use palpate::trace::Question;
 
 use super::*;
 
@@ -208,23 +208,10 @@ fn check_place(place: &RobustPlace) {
 }
 
 fn check_exact(hypotheses: Hypotheses<'_>, record: &Record, question: &RobustQuestion<'_>) {
-    let unknown = [
-        Unknown::Offset,
-        Unknown::Drift,
-        Unknown::Gain,
-        Unknown::Variance,
-    ];
     let asked = Question {
-        depth: DEPTH,
-        depth_tolerance: 0.3e-3,
         is_zeroed: question.is_zeroed,
-        unknown: &unknown[..3 + usize::from(question.noise_sd.is_none())],
-        noise: Noise {
-            sd: question.noise_sd,
-            correlation: Correlation::OfRecord,
-        },
-        criterion: Criterion::MaximumAPosteriori,
         prior_h1: question.prior_h1,
+        ..exact_question(question.noise_sd)
     };
     // It may be refused, in words.
     if let Ok(found) = asked.judge(hypotheses, record) {

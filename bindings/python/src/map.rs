@@ -196,6 +196,7 @@ impl ForceMap {
         laterals_mm: Any<'_, 'py>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let depth = si("depth_mm", depth_mm, -3)?;
+        doubt_metres(py, "depth_mm", &[depth_mm])?;
         let laterals = lengths("laterals_mm", laterals_mm)?;
         channels(py, self.0.table().sweep(depth, &laterals).map_err(refused)?)
     }

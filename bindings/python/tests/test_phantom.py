@@ -258,6 +258,7 @@ def test_metres_are_doubted(phantom, tmp_path):
         (lambda: phantom.solve(0.004, **COARSE), "depth_mm is at most 0.004 mm"),
         (lambda: phantom.write_vtu(tmp_path / "deformed.vtu", 0.004, **COARSE), "depth_mm is at most 0.004 mm"),
         (lambda: palpate.ForceMap([0, 2], [-8, 8], one, one).force([0.001, 0.002], 0), "depth_mm is at most 0.002 mm"),
+        (lambda: palpate.ForceMap([0, 2], [-8, 8], one, one).sweep(0.002, [0, 1]), "depth_mm is at most 0.002 mm"),
         (lambda: palpate.ServoTable(palpate.ForceMap([1, 2], [-8, 8], one, one)).force(0.002, 0), "depth_mm"),
         (lambda: palpate.ForceMap([0.001, 0.002], [-8, 8], one, one), "depths_mm"),
         (lambda: palpate.ForceMap([1, 2], [-0.008, 0.008], one, one), "laterals_mm"),

@@ -2,7 +2,7 @@
 
 use super::noise::WhiteNoise;
 use super::{DetectError, Force};
-use crate::stats::error::{check_length, in_range};
+use crate::stats::error::{check_length, in_range, representable};
 use core::ops::{Range, RangeInclusive};
 
 /// A template of M samples a channel that may begin at any sample of a record of N.
@@ -134,7 +134,8 @@ impl<'a> Scan<'a> {
         if shift != first && shift != last {
             let [before, _] = self.point(residual, shift - 1)?;
             let [after, _] = self.point(residual, shift + 1)?;
-            refined_shift += vertex(before, theta, after);
+            let refined = refined_shift + vertex(before, theta, after);
+            refined_shift = representable("refined_shift", refined)?;
         }
         Ok(ScanMaximum {
             theta,

@@ -14,7 +14,7 @@ use crate::refusal::Refusal;
 use crate::text::extremes;
 use crate::trace::contact::{is_narrow, radius};
 use crate::trace::design::{Design, difference, expected, squares};
-use crate::trace::{Cause, Criterion, Fit, Question, Record, refused};
+use crate::trace::{Cause, Criterion, Fit, MUCH_LIKELIER, Question, Record, is_none, refused};
 
 /// A search for the inclusion of a bank in records.
 ///
@@ -82,8 +82,27 @@ impl BankSearch<'_> {
     /// A depth other than the bank's; positions outside it; a prior of another length; maps that differ by what is unknown alone;
     /// whatever the detector refuses.
     ///
-    /// Implements: BNK-060, BNK-033, BNK-034, TRC-075.
+    /// Implements: TRC-077.
     pub fn locate(&self, record: &Record) -> Result<Location, Refusal> {
+        let mut found = self.locate_as_recorded(record)?;
+        let mut search = *self;
+        search.question.criterion = Criterion::MaximumAPosteriori;
+        let theta = |other: &Record| Ok(search.locate_as_recorded(other)?.theta_mixture);
+        let (without, depth) = (self.bank.reference().table(), self.question.depth);
+        if is_none(found.decision, &found.causes)
+            && found.theta_mixture < MUCH_LIKELIER
+            && record.hides_inclusion(without, depth, theta)?
+        {
+            found.decision = None;
+            found.causes.push(Cause::Channels);
+        }
+        Ok(found)
+    }
+
+    /// As [`BankSearch::locate`], of lateral forces that are what they are said to be.
+    ///
+    /// Implements: BNK-060, BNK-033, BNK-034, TRC-075.
+    fn locate_as_recorded(&self, record: &Record) -> Result<Location, Refusal> {
         let located = || {
             let (question, depth) = (&self.question, self.question.depth);
             if record.depths().is_none() {
@@ -164,7 +183,7 @@ impl BankSearch<'_> {
             let (decisive, least) = if by_mixture {
                 (theta_mixture, eta - libm::log(detector.prior()[likeliest]))
             } else {
-                (test.theta(), eta)
+                (statistic.theta[likeliest], eta)
             };
             let (decision, causes) = self.question.verdict(decide(decisive, eta)?, &fit);
             let place = detector.place(&statistic);
@@ -172,7 +191,7 @@ impl BankSearch<'_> {
                 decision,
                 causes,
                 point: self.bank.point(likeliest),
-                theta_max: test.theta(),
+                theta_max: statistic.theta[likeliest],
                 theta_mixture,
                 threshold: SearchThreshold {
                     eta,

@@ -4,6 +4,7 @@ use super::axis::{BankAxis, BankCell, PRIOR, places};
 use super::cells::Nodes;
 use super::detector::{BankDetector, BankStatistic};
 use crate::detect::DetectError;
+use crate::force_map::SAME_POSITION;
 use crate::stats::Bounds;
 use crate::stats::error::check_probability;
 
@@ -213,5 +214,22 @@ impl PlacePosterior {
         let tail = 0.5 * (1.0 - level);
         let [lower, upper] = [tail, 1.0 - tail].map(point);
         Ok(Bounds { lower, upper })
+    }
+
+    /// The ends of the interval to show, which hold the estimate; none where that is an end of the bank, for the likelihood still rises
+    /// there. Near it the likeliest place may lie where the tail of [`PlacePosterior::interval`] is.
+    ///
+    /// # Errors
+    /// As [`PlacePosterior::interval`].
+    ///
+    /// Implements: CLI-153.
+    pub fn ends(&self, axis: usize, level: f64) -> Result<[Option<f64>; 2], DetectError> {
+        let Bounds { lower, upper } = self.interval(axis, level)?;
+        let (estimate, points) = (self.estimate[axis], &self.axes[axis].points);
+        let is_within = |end: f64| (end - estimate).abs() > SAME_POSITION;
+        Ok([
+            is_within(points[0]).then_some(lower.min(estimate)),
+            is_within(points[points.len() - 1]).then_some(upper.max(estimate)),
+        ])
     }
 }

@@ -12,7 +12,7 @@ use crate::refusal::Refusal;
 use crate::stats::error::{check_positive, check_probability, check_samples, in_range};
 use crate::trace::contact::wrong_gain;
 use crate::trace::design::{self, depth_slope, difference, single_depth, slope, stacked};
-use crate::trace::{Cause, Record, Unknown, refused};
+use crate::trace::{Cause, MUCH_LIKELIER, Record, Unknown, refused};
 
 /// −ln of half the rate at which a record that fits is taken for a misfit.
 ///
@@ -56,6 +56,8 @@ pub struct Watcher {
     /// The same at the sample at hand.
     at_sample: Vec<f64>,
     pub(super) found: Sequential<Vec<f64>>,
+    /// The same by the normal forces alone, and with the other sign of what the lateral ones have beside those of the reference.
+    others: [Sequential<Vec<f64>>; 2],
     counts: SampleCounts,
     /// Σ F f and Σ f² of the normal forces over the noise.
     contact: [f64; 2],
@@ -171,7 +173,10 @@ impl Watcher {
         let unknown = Unknown::ALL.into_iter();
         let unknown: Vec<_> = unknown.filter(|of| question.unknown.contains(of)).collect();
         let nuisances = columns(&unknown);
-        let found = Sequential::new(vec![0.0; memory(maps, nuisances)], maps, nuisances);
+        let begun = || {
+            let begun = Sequential::new(vec![0.0; memory(maps, nuisances)], maps, nuisances);
+            begun.map_err(refused)
+        };
         let reference = bank.reference().table().clone();
         let depths = bank.probe_depths().iter();
         let expected = depths.map(|&depth| expected(bank, question, depth));
@@ -187,7 +192,8 @@ impl Watcher {
             reference,
             depths: bank.probe_depths().to_vec(),
             expected,
-            found: found.map_err(refused)?,
+            found: begun()?,
+            others: [begun()?, begun()?],
             counts: SampleCounts::default(),
             contact: [0.0; 2],
             answered: None,
@@ -310,8 +316,14 @@ impl Watcher {
             nuisances[used + at] = value;
             used += columns(&[unknown]);
         }
-        self.found
-            .push(force - expected[0], &nuisances[..used], signals)
+        let (residual, nuisances) = (force - expected[0], &nuisances[..used]);
+        let [normal, turned] = &mut self.others;
+        if channel == 1 {
+            normal.push(residual, nuisances, signals)?;
+        }
+        let sign = if channel == 0 { -1.0 } else { 1.0 };
+        turned.push(sign * residual, nuisances, signals)?;
+        self.found.push(residual, nuisances, signals)
     }
 
     /// Whether the test is over.
@@ -380,19 +392,33 @@ impl Watcher {
         let beyond = self.found.residual() - told - degrees;
         let width = 2.0 * libm::sqrt(MISFIT * degrees.max(0.0));
         let is_misfit = degrees > 0.0 && (beyond < -width || beyond > width + 2.0 * MISFIT);
+        let is_none = self.possible().all(|(_, of)| self.is_excluded(of));
         // In air it would be the same, so that an answer that there is nothing does not begin.
-        let is_silent = self.question.is_zeroed
-            && !is_misfit
-            && self.answered.is_none()
-            && self.possible().all(|(_, of)| self.is_excluded(of));
-        let causes = [(is_misfit, Cause::Misfit), (is_silent, Cause::Zeroed)];
+        let is_silent = self.question.is_zeroed && !is_misfit && self.answered.is_none() && is_none;
+        let is_hidden = is_none && self.others.iter().any(|of| self.is_likely(of));
+        let causes = [
+            (is_misfit, Cause::Misfit),
+            (is_silent, Cause::Zeroed),
+            (is_hidden, Cause::Channels),
+        ];
         let causes = causes.into_iter().filter(|(is_so, _)| *is_so);
         level.into_iter().chain(causes.map(|(_, cause)| cause))
     }
 
+    /// Whether an inclusion is much likelier than none by these samples.
+    ///
+    /// Implements: SEQ-023.
+    fn is_likely(&self, by: &Sequential<Vec<f64>>) -> bool {
+        self.theta_of(by).is_ok_and(|theta| theta >= MUCH_LIKELIER)
+    }
+
     /// ln of the likelihood ratio of an inclusion at any point.
     fn theta(&self) -> Result<f64, DetectError> {
-        let theta: Vec<f64> = self.found.evidence().map(Evidence::theta).collect();
+        self.theta_of(&self.found)
+    }
+
+    fn theta_of(&self, found: &Sequential<Vec<f64>>) -> Result<f64, DetectError> {
+        let theta: Vec<f64> = found.evidence().map(Evidence::theta).collect();
         mixture_theta(&theta, &self.prior)
     }
 
@@ -438,7 +464,8 @@ impl Watcher {
             decided_at_sample: answered.map(|(_, sample)| sample),
             likeliest: best.map(|(place, of)| {
                 let [position_m, depth_m, diameter_m, youngs_modulus_pa] = self.points[place];
-                let probability = self.prior[place] * libm::exp(of.theta() - theta);
+                // The rounding of a large θ may exceed 1.
+                let probability = (self.prior[place] * libm::exp(of.theta() - theta)).min(1.0);
                 LikeliestPlace {
                     position_m,
                     depth_m,

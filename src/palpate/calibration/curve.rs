@@ -117,9 +117,12 @@ impl Curve {
             let kept = back.map_or(all, |back| deepest + back);
             let found = format!("{kept} samples on the way into the gel");
             let few = Refusal::state(found, format!("give at least {LEAST_SAMPLES}"));
+            let still = Refusal::state(
+                "the probe does not move into the gel",
+                "give a curve into the gel, on which the depth grows",
+            );
+            still.when(all > 0 && most <= first)?;
             few.when(kept < LEAST_SAMPLES)?;
-            let still = Refusal::state("the probe does not move", "give a curve into the gel");
-            still.when(most <= first)?;
             let mut notes = Vec::new();
             if kept < all {
                 let back = all - kept;

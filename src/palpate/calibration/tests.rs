@@ -489,7 +489,7 @@ fn curves_that_are_none_are_refused() {
     assert_eq!(read.notes(), [unused, kept.notes()[0].clone()]);
     assert_eq!(
         curve(40, 0.0),
-        "c: the probe does not move; give a curve into the gel"
+        "c: the probe does not move into the gel; give a curve into the gel, on which the depth grows"
     );
     let text = "t (s),depth_mm,Fz\n".to_string() + &"0,1,1\n".repeat(30);
     let error = Curve::from_csv(&text, "c.csv", &Default::default()).unwrap_err();

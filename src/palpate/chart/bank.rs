@@ -10,7 +10,7 @@ use crate::bank::{Bank, Parameter, PlacePosterior};
 use crate::detect::DetectError;
 use crate::phantom::{Inclusion, Shape};
 use crate::refusal::Refusal;
-use crate::stats::Bounds;
+use crate::robust::PlaceInterval;
 use crate::text::{extremes, trimmed};
 
 /// The colours of the credible regions with their levels, the later over the earlier.
@@ -104,28 +104,33 @@ fn marginal(
         .zip(&sums)
         .map(|([from, to], (_, mass))| ([from, to], mass / (of_unit * (to - from))));
     let bars: Vec<_> = bars.collect();
-    let Bounds { lower, upper } = place.interval(axis, LEVEL)?;
-    let [low, high, estimate] = [lower, upper, place.estimate[axis]].map(|x| scale * x);
-    // The interval and the estimate are shown, with some room.
+    let [lower, upper] = place.ends(axis, LEVEL)?;
+    let interval = PlaceInterval {
+        estimate: place.estimate[axis],
+        lower,
+        upper,
+    };
+    let range = interval.in_words(|x| trimmed(scale * x, 3));
     let (first, last) = (points[0], points[points.len() - 1]);
+    let [low, high] = [lower, upper].map(|end| end.map(|x| scale * x));
+    let from = if low.and(high).is_some() { "from " } else { "" };
+    let (low, high) = (low.unwrap_or(first), high.unwrap_or(last));
+    let estimate = scale * interval.estimate;
+    // The interval and the estimate are shown, with some room.
     let aside = (high - low).max(0.02 * (last - first));
     let x = [
         (low.min(estimate) - aside).max(first),
         (high.max(estimate) + aside).min(last),
     ];
     let values = [low, high, estimate];
-    let [estimate, low, high] = [estimate, low, high].map(|x| trimmed(x, 3));
-    let names = [
-        format!("95 %: {low} to {high}"),
-        format!("likeliest: {estimate}"),
-    ];
+    let estimate = trimmed(estimate, 3);
+    let names = [format!("95 %: {range}"), format!("likeliest: {estimate}")];
     let panel = Panel {
         x_name: format!("{name} ({unit})"),
         heading: format!("Probability density (1/{per})"),
         ..posterior(&bars, x, values, names)
     };
-    let words =
-        format!("{name}: {estimate} {unit}, with 95 % probability from {low} to {high} {unit}");
+    let words = format!("{name}: {estimate} {unit}, with 95 % probability {from}{range} {unit}");
     Ok((panel, words))
 }
 

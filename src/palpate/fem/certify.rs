@@ -4,6 +4,7 @@
 use std::convert::Infallible;
 
 use super::{FemError, Model};
+use crate::decimal::mm;
 use crate::force_map::{Discretization, ForceMap, ForceTable, Matrix};
 use crate::stats::tails::halved;
 
@@ -50,15 +51,25 @@ pub fn certified_map_while(
     laterals: &[f64],
     solved: &dyn Fn(usize) -> bool,
 ) -> Result<ForceMap, FemError> {
-    let finest = model.map_while(depths, laterals, solved)?;
-    let coarser = |ratio: f64| -> Result<(usize, ForceTable), FemError> {
+    model.check_poses(depths, laterals)?;
+    let coarser = |ratio: f64| {
         let size = ratio * model.mesh_size();
-        let coarser = Model::new(model.phantom(), size, model.surface().contact)?;
-        let table = coarser.table(depths, laterals, solved)?;
-        Ok((coarser.mesh().nodes.len(), table))
+        let solved = || -> Result<(usize, ForceTable), FemError> {
+            let coarser = Model::new(model.phantom(), size, model.surface().contact)?;
+            let table = coarser.table(depths, laterals, solved)?;
+            Ok((coarser.mesh().nodes.len(), table))
+        };
+        let part = format!("the mesh of {} mm for the error bands", mm(size));
+        solved().map_err(|error| match error {
+            FemError::Refused(of) => FemError::Refused(of.of_part(&part).into()),
+            FemError::Pose(of) => FemError::Pose(of.of_part(&part).into()),
+            other => other,
+        })
     };
-    let (middle_nodes, middle) = coarser(MESH_RATIOS[0])?;
+    // The coarsest first: what it refuses shall not cost the time of the others.
     let (coarse_nodes, coarse) = coarser(MESH_RATIOS[0] * MESH_RATIOS[1])?;
+    let (middle_nodes, middle) = coarser(MESH_RATIOS[0])?;
+    let finest = model.map_while(depths, laterals, solved)?;
     let (fine, middle) = (finest.table().both()?, middle.both()?);
     let bands = fine.zip(middle).zip(coarse.both()?);
     let bands = bands.map(|((fine, middle), coarse)| {

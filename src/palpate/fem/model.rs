@@ -503,7 +503,7 @@ impl Model {
     }
 
     /// Axes first: a list that cannot be a map shall not cost the time to solve it.
-    fn check_poses(&self, depths: &[f64], laterals: &[f64]) -> Result<(), FemError> {
+    pub(super) fn check_poses(&self, depths: &[f64], laterals: &[f64]) -> Result<(), FemError> {
         check_axes(depths, laterals)?;
         for &lateral in laterals {
             for &depth in depths {

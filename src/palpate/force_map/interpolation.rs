@@ -81,7 +81,7 @@ impl Stencil {
     ///
     /// Implements: MAP-090.
     pub fn of_rows(depths: &[f64], depth: f64) -> Option<Stencil> {
-        if depth < *depths.first()? && depth >= shallowest(depths) {
+        if depth < *depths.first()? - SAME_POSITION && depth > shallowest(depths) {
             let (first, weights) = (0, Vec::new());
             return Some(Stencil { first, weights });
         }

@@ -313,7 +313,7 @@ impl ForceMap {
     pub fn mirror_image(&self) -> Result<ForceMap, Refusal> {
         let phantom = self.phantom.as_ref().and_then(Phantom::mirror_image);
         let phantom = phantom.ok_or_else(|| {
-            let found = "no phantom, or an inclusion that is not symmetric";
+            let found = "no phantom, or one with friction, oblique fibres or an inclusion that is not symmetric";
             Refusal::state(found, "give a phantom to take the mirror image of")
         })?;
         let mut map = ForceMap {

@@ -15,7 +15,7 @@ use crate::force_map::ForceTable;
 use crate::refusal::Refusal;
 use crate::stats::noncentral::chi_square;
 use crate::trace::contact::wrong_level;
-use crate::trace::{Cause, refused};
+use crate::trace::{Cause, MUCH_LIKELIER, is_none, refused};
 
 /// A record that fits a class and hypothesis is farther from its mean with this probability.
 const MISFIT_RATE: f64 = 1e-5;
@@ -23,8 +23,8 @@ const MISFIT_RATE: f64 = 1e-5;
 ///
 /// Implements: ROB-008.
 const LARGEST: f64 = 1e20;
-/// By so much ln of the likelihood, a thousandfold, records are likelier whose lateral force has the other sign.
-const MUCH_LIKELIER: f64 = 6.9;
+/// A sweep whose mean force is this share of the heaviest one's has a level of its own.
+const HEAVY: f64 = 0.75;
 /// A record allows a class with a posterior above this.
 const ALLOWED: f64 = 0.01;
 
@@ -138,7 +138,7 @@ impl<'a> RobustDetector<'a> {
             return Ok(answer);
         }
         let level = self.level(&answer.levels);
-        if let Some(cause) = wrong_level(level) {
+        if let Some(cause) = self.wrong_level(&answer.levels) {
             answer.causes.push(cause);
             return Ok(answer);
         }
@@ -157,7 +157,11 @@ impl<'a> RobustDetector<'a> {
         };
         self.conclude(&found, &noise, &mut answer)?;
         let has_lateral = self.sweeps.iter().any(|sweep| sweep.has_lateral);
-        if let Some(decision) = answer.decision.filter(|_| has_lateral) {
+        let decision = match is_none(answer.decision, &answer.causes) {
+            true => Some(Decision::NoInclusion),
+            false => answer.decision,
+        };
+        if let Some(decision) = decision.filter(|_| has_lateral) {
             let is_turned = decision == Decision::NoInclusion
                 && self.is_likelier_turned(&cleaned, level, &noise, &found);
             if is_turned || self.is_contradicted(decision, [&record, &noise])? {
@@ -227,6 +231,18 @@ impl<'a> RobustDetector<'a> {
         let pairs = weights.zip(levels);
         let heaviest = pairs.max_by(|a, b| a.0.total_cmp(&b.0));
         heaviest.map_or(1.0, |(_, level)| *level)
+    }
+
+    /// What is wrong with the level of a sweep that is about as heavy as the heaviest: an offset hides that of a light one.
+    ///
+    /// Implements: ROB-003.
+    fn wrong_level(&self, levels: &[f64]) -> Option<Cause> {
+        let weights = || self.sweeps.iter().map(PreparedSweep::weight);
+        let heaviest = weights().fold(f64::NEG_INFINITY, f64::max);
+        let mut heavy = weights()
+            .zip(levels)
+            .filter(|(weight, _)| *weight >= HEAVY * heaviest);
+        heavy.find_map(|(_, level)| wrong_level(*level))
     }
 
     fn conclude(

@@ -57,6 +57,8 @@ const STEP: f64 = 1e-4;
 const SETTLE: f64 = 1.0;
 /// The share of its velocity that damping and stiffness may take from a hand in a step.
 const MOST_PER_STEP: f64 = 0.1;
+/// The damping of a hand at least, in steps of the gel's stiffness: a tenth of it may be missing.
+const TIMES_STEPS: f64 = 5.0;
 /// Phases are drawn apart from the deviates.
 const PHASES: u64 = 2;
 
@@ -83,19 +85,21 @@ impl Motion {
         let Some(hand) = self.hand else {
             return Ok(samples.iter().map(|&time| target(time)).collect());
         };
-        hand.check()?;
+        hand.check(gel)?;
         let first = samples[0];
         let mut handles = target(first).map(|place| Handle::at(hand.mechanics(), place));
         let mut places = Vec::with_capacity(samples.len());
-        let mut time = first - SETTLE;
+        // Of the first sample: a step would round beside a large time.
+        let mut time = -SETTLE;
         for &sample in samples {
+            let sample = sample - first;
             // The last step ends at the sample, but for rounding.
             while sample - time > 1e-6 * STEP {
                 let step = STEP.min(sample - time);
                 let place = handles.map(|handle| handle.position);
                 let [lateral, normal] = elastic(gel, place)?;
                 let forces = [lateral, -normal];
-                let wanted = target(time);
+                let wanted = target(first + time);
                 for (axis, handle) in handles.iter_mut().enumerate() {
                     handle.advance(step, wanted[axis], forces[axis]);
                 }
@@ -108,8 +112,23 @@ impl Motion {
 }
 
 impl Hand {
-    /// Refuses a hand whose motion the steps do not follow.
-    fn check(&self) -> Result<(), Refusal> {
+    /// Refuses a hand whose motion the steps do not follow: the gel's force, held for a step, takes half a step's stiffness of its damping.
+    ///
+    /// Implements: CLI-232.
+    fn check(&self, gel: &ForceTable) -> Result<(), Refusal> {
+        let (depths, forces) = (gel.depths(), gel.normal());
+        let slope = |row: usize, column: usize| {
+            let [from, to] = [row, row + 1].map(|row| forces.row(row)[column]);
+            (to - from) / (depths[row + 1] - depths[row])
+        };
+        let columns = 0..gel.laterals().len();
+        let rows = 0..depths.len() - 1;
+        let slopes = rows.flat_map(|row| columns.clone().map(move |column| slope(row, column)));
+        let least = TIMES_STEPS * STEP * slopes.fold(0.0, f64::max);
+        let found = format!("a hand of {} N·s/m", self.damping);
+        let remedy =
+            format!("give at least {least:.3} N·s/m on this gel, whose force is held for 0.1 ms");
+        Refusal::state(found, remedy).when(self.damping < least)?;
         let step = 0.1 * STEP;
         let per_step = (self.damping + self.stiffness * step) * step / self.mass;
         let found = format!("a hand of {} kg", self.mass);

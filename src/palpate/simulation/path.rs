@@ -14,6 +14,8 @@ pub struct Path {
 
 /// How long the probe goes from one depth to the next, without samples, s.
 const TURN: f64 = 0.5;
+/// The share of a sample by which the last one may miss the end of a pass.
+const ROUNDING: f64 = 1e-9;
 /// Samples of a record at most.
 const MOST: f64 = 1e6;
 
@@ -33,8 +35,8 @@ impl Path {
     /// Implements: SIM-010.
     pub fn passes(depths: &[f64], ends: [f64; 2], speed: f64, rate: f64) -> Result<Path, Refusal> {
         let time = (ends[1] - ends[0]).abs() / speed;
-        // One sample more where the last lies on the end but for rounding.
-        let steps = (time * rate + 1e-9).floor();
+        // One sample more where the last lies on the end but for rounding: it is there.
+        let steps = (time * rate + ROUNDING).floor();
         let is_right = time > 0.0 && speed > 0.0 && rate > 0.0 && !depths.is_empty();
         let no = Refusal::state(
             "a path has no length, speed, rate or depth",
@@ -46,7 +48,11 @@ impl Path {
         for (pass, &depth) in depths.iter().enumerate() {
             let [from, to] = [ends[pass % 2], ends[1 - pass % 2]];
             waypoints.extend([[start, from, depth], [start + time, to, depth]]);
-            samples.extend((0..=steps as u64).map(|k| start + (k as f64 / rate).min(time)));
+            let at = |k: u64| match time * rate - k as f64 <= ROUNDING {
+                true => time,
+                false => k as f64 / rate,
+            };
+            samples.extend((0..=steps as u64).map(|k| start + at(k)));
             start += time + TURN;
         }
         Ok(Path { waypoints, samples })

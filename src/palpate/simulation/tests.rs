@@ -54,6 +54,10 @@ fn passes_go_there_and_back_with_the_samples_of_their_rate() {
         assert_near(found.forces.normal[sample], 0.4 * (1.0 + 10.0 * x), 1e-14);
         assert_near(found.forces.lateral[back], 0.3 * (1.0 - 10.0 * x), 1e-14);
     }
+    // A last sample that is on the end but for rounding is where the next pass begins, and does not move there.
+    let path = Path::passes(&[2e-3, 2e-3], [-1e-2, 1e-2], 15e-3, 30.0).unwrap();
+    let found = simulation(&gel, &path).record(1).unwrap();
+    assert_eq!(found.positions[40], found.positions[41]);
     // The last sample counts although 0.7/0.1 is below 7, and none is beyond the end.
     let path = Path::passes(&[1e-3], [0.0, 0.7], 0.1, 1.0).unwrap();
     assert_eq!(path.samples().len(), 8);

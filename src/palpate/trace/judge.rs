@@ -7,7 +7,7 @@ use super::question::{Criterion, Question};
 use super::{Record, refused};
 use crate::detect::nuisance::{Nuisances, SubspaceDetector, SubspaceTest, Threshold};
 use crate::detect::{Decision, DetectError, ErrorRates, map_threshold, posterior};
-use crate::force_map::Hypotheses;
+use crate::force_map::{ForceTable, Hypotheses};
 use crate::refusal::Refusal;
 
 /// The answer at the position that the maps are for.
@@ -31,6 +31,44 @@ pub struct Judgement {
     pub fit: Fit,
 }
 
+/// A θ from which on one of two hypotheses is a thousand times as likely as the other.
+pub const MUCH_LIKELIER: f64 = 6.907_755_278_982_137;
+
+/// Whether the answer is that there is no inclusion, or would be if the sensor had not been set to zero on the gel.
+///
+/// Implements: TRC-077.
+pub fn is_none(decision: Option<Decision>, causes: &[Cause]) -> bool {
+    decision == Some(Decision::NoInclusion) || causes == [Cause::Zeroed]
+}
+
+impl Record {
+    /// Whether `theta` of this record makes an inclusion much likelier than none, once the record is without its lateral forces, or with
+    /// the other sign of what they have beside those of the map `without` inclusion, at `depth` (m).
+    ///
+    /// # Errors
+    /// As [`Record::expected`].
+    ///
+    /// Implements: TRC-077.
+    pub(crate) fn hides_inclusion(
+        &self,
+        without: &ForceTable,
+        depth: f64,
+        theta: impl Fn(&Record) -> Result<f64, Refusal>,
+    ) -> Result<bool, Refusal> {
+        if self.forces().lateral.is_empty() {
+            return Ok(false);
+        }
+        let expected = self.expected(without, depth)?.lateral;
+        let mut turned = self.clone();
+        for (force, expected) in turned.forces.lateral.iter_mut().zip(expected) {
+            *force = 2.0 * expected - *force;
+        }
+        let mut others = [turned, self.clone().normal_alone()].into_iter();
+        // One that cannot be judged so says nothing.
+        Ok(others.any(|other| theta(&other).is_ok_and(|theta| theta >= MUCH_LIKELIER)))
+    }
+}
+
 impl Question<'_> {
     /// The parts of a design over the noise of a sample, and how well they fit.
     pub(crate) fn fitted(&self, design: &Design) -> Result<(Design, Fit), DetectError> {
@@ -49,8 +87,28 @@ impl Question<'_> {
     /// Positions or a depth outside the maps; maps that do not differ at the samples but by what is unknown; whatever the
     /// detector refuses.
     ///
-    /// Implements: TRC-008, TRC-065, TRC-060, CLI-043, CLI-049.
+    /// Implements: TRC-008, TRC-077, CLI-049.
     pub fn judge(&self, hypotheses: Hypotheses<'_>, record: &Record) -> Result<Judgement, Refusal> {
+        let mut found = self.judge_as_recorded(hypotheses, record)?;
+        let theta = |other: &Record| Ok(self.judge_as_recorded(hypotheses, other)?.test.theta());
+        if is_none(found.decision, &found.causes)
+            && found.test.theta() < MUCH_LIKELIER
+            && record.hides_inclusion(hypotheses.without(), self.depth, theta)?
+        {
+            found.decision = None;
+            found.causes.push(Cause::Channels);
+        }
+        Ok(found)
+    }
+
+    /// As [`Question::judge`], of lateral forces that are what they are said to be.
+    ///
+    /// Implements: TRC-065, TRC-060, CLI-043.
+    fn judge_as_recorded(
+        &self,
+        hypotheses: Hypotheses<'_>,
+        record: &Record,
+    ) -> Result<Judgement, Refusal> {
         let mut design = Design::new(self, hypotheses.without(), record)?;
         design.set_template(self, hypotheses.with(), record)?;
         design.add_depth_error(self, hypotheses.with(), record)?;

@@ -81,12 +81,16 @@ impl LiveSamples {
     /// Implements: CLI-182.
     pub fn sample(&mut self, text: &str) -> Result<Option<LiveSample>, Refusal> {
         self.line += 1;
-        let text = text.trim_start_matches('\u{feff}').trim();
-        if text.is_empty() || text.starts_with('#') || self.line <= self.skipped {
+        // A tab separates, also at an end.
+        let text = text
+            .trim_start_matches('\u{feff}')
+            .trim_matches([' ', '\r', '\n']);
+        let content = text.trim();
+        if content.is_empty() || content.starts_with('#') || self.line <= self.skipped {
             return Ok(None);
         }
         let read = match self.header.clone() {
-            None if text.starts_with('{') => {
+            None if content.starts_with('{') => {
                 object(text).and_then(|[header, row]| Ok(Some(self.row(&header, &row)?.0)))
             }
             None => {
@@ -226,6 +230,10 @@ mod tests {
             read(&lines).unwrap(),
             [[0.0, 0.0, 1.5], [1e-3, 0.0, 1.6005]]
         );
+        assert_eq!(
+            read(&["position,force", "mm,N", "0,1.5"]).unwrap(),
+            [[0.0, 0.0, 1.5]]
+        );
         // Nothing but numbers stands below them.
         let later = read(&["position_mm;Fz", "0;1", "mm;mN"]).unwrap_err();
         assert!(later.starts_with("-:3: "), "{later}");
@@ -250,6 +258,8 @@ mod tests {
                 r#"{"position_mm": 1, "lateral_force_n": 1, "normal_force_n": null}"#,
                 r#"{"position_mm": 1, "normal_force_n": 1}"#,
             ],
+            // A tab at an end is before or after an empty field.
+            &["\tposition_mm\tFz\tFx", "0\t1\t1.5\t", "\t1\t1.5\t"],
         ];
         for text in texts {
             let read = read(text).unwrap();

@@ -69,6 +69,7 @@ pub use cause::{Cause, reasons};
 pub use design::{gammas_along, nuisances};
 pub use fit::{Fit, MISFIT_RATE};
 pub use judge::Judgement;
+pub(crate) use judge::{MUCH_LIKELIER, is_none};
 pub use live::{LiveSample, LiveSamples};
 pub use question::{Correlation, Criterion, Noise, Question, Unknown, in_words};
 

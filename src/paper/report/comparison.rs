@@ -121,8 +121,8 @@ fn forces(level: Option<f64>, maps: &[MapFindings]) -> Vec<Option<Comparison>> {
             "§2",
             ("1.6 N, nominal", Value::ForceN, paper::FORCE_LEVEL),
             level,
-            "The paper does not say which element it used. Six-node triangles do not lock at ν = 0.49, and their force hardly depends on \
-             the mesh. Elements that lock give more. The authors’ moduli are “roughly determined”, too.",
+            "The paper does not say which element it used. Six-node triangles do not lock at ν = 0.49; how far their \
+             force depends on the mesh, the bands in the table of certificates say. Elements that lock give more. The authors’ moduli are “roughly determined”, too.",
         ),
         row(
             format!("Signal F₁ − F₀: here the peak normal signal at {nearest_name} mm"),
@@ -239,6 +239,7 @@ fn subjects(bridge: &Bridge) -> Option<Comparison> {
         _ => String::new(),
     };
     let not = if fit.is_rejected { "" } else { "do not " };
+    let of_all = named(bridge);
     row(
         "Noise of the subjects, peak signal at 6.6 mm over γ",
         "§5",
@@ -246,8 +247,8 @@ fn subjects(bridge: &Bridge) -> Option<Comparison> {
         Some(noise),
         format!(
             "Ours is {} N over {}, with our own peak and the γ of the answers counted in Table 1. The paper's peak over the true γ of 84 % \
-             would be 242 mN.{interval} Over the sweep of the maps, and with the answers of a subject taken as binomial, the answers to \
-             all depths {not}reject the peak of the normal force as what the subjects felt (p = {}).",
+             would be 242 mN.{interval} Over the sweep of the maps, and with the answers of a subject taken as binomial, the answers at \
+             {of_all} mm {not}reject the peak of the normal force as what the subjects felt (p = {}).",
             fixed(of.signal_n, 3),
             fixed(of.signal_n / noise, 3),
             p_value(fit.p_value)
@@ -275,13 +276,19 @@ fn shares(bridge: &Bridge) -> Option<Vec<Option<Comparison>>> {
             (percent(observed.rate), Value::Probability, observed.rate),
             Some(*here),
             format!(
-                "Φ(γ/√2) with γ = peak normal signal/noise, one noise level of {} N fitted to all depths together.{}{off}",
+                "Φ(γ/√2) with γ = peak normal signal/noise, one noise level of {} N fitted to the answers at {} mm together.{}{off}",
                 fixed(common.noise_n, 3),
+                named(bridge),
                 interval.unwrap_or_default()
             ),
         )
     });
     Some(rows.collect())
+}
+
+/// The depths of the inclusions whose answers are fitted.
+fn named(bridge: &Bridge) -> String {
+    joined(bridge.inclusions.iter().map(|of| of.name.into()), ", ")
 }
 
 /// FEM playback with the paper's own convention: the peak of the normal force.

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::gamma::{GammaByChannel, gamma};
 use super::hand::{GammaOfHand, HandPath};
 use super::nuisances::GammaLeft;
-use super::quality::{Quality, warnings};
+use super::quality::{Quality, small_strain, warnings};
 use super::text::name_of_map;
 use super::{Settings, paper};
 use palpate::detect::{
@@ -13,7 +13,7 @@ use palpate::detect::{
     neyman_pearson_miss_threshold, two_afc,
 };
 use palpate::force::Force;
-use palpate::force_map::{ForceMap, SAME_POSITION, peak};
+use palpate::force_map::{ForceMap, Hypotheses, SAME_POSITION, peak};
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
 
@@ -26,6 +26,8 @@ pub struct ReferenceFindings {
     pub normal_force_at_centre_n: Option<f64>,
     /// How good the computation was; `None` for measured forces.
     pub quality: Option<Quality>,
+    /// What a reader must know before using these numbers.
+    pub warnings: Vec<String>,
 }
 
 /// What the map of one phantom says.
@@ -129,10 +131,12 @@ pub(super) fn of_reference(map: &ForceMap, depth: f64) -> Result<ReferenceFindin
     let row = table.row(depth).map_err(incomparable(map))?;
     let mut laterals = table.laterals().iter();
     let centre = laterals.position(|x| x.abs() <= SAME_POSITION);
+    let quality = Quality::of(map);
     Ok(ReferenceFindings {
         name: name_of_map(map),
         normal_force_at_centre_n: centre.map(|column| row.normal[column]),
-        quality: Quality::of(map),
+        warnings: small_strain(quality.as_ref()).into_iter().collect(),
+        quality,
     })
 }
 
@@ -174,6 +178,8 @@ fn of_map(
     let name = name_of_map(map);
     let (gamma, detection) = judged.map_err(Refusal::because(format!("map {name:?}")))?;
     let (quality, phantom) = (Quality::of(map), map.phantom());
+    let pair = Hypotheses::new(reference, map).map(|_| ());
+    let warnings = warnings(quality.as_ref(), gamma.both, pair);
     let peak = |forces: &[f64]| {
         let (force_n, lateral_m) = peak(map.table().laterals(), forces);
         Peak { force_n, lateral_m }
@@ -188,7 +194,7 @@ fn of_map(
         gamma_left,
         gamma_of_hand: hand.and_then(|hand| hand.gamma(map, settings.noise_sd_n)),
         detection,
-        warnings: warnings(quality.as_ref(), gamma.both),
+        warnings,
         quality,
     })
 }

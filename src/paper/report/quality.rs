@@ -6,6 +6,7 @@ use serde::{Serialize, Serializer};
 use super::text::millimetres;
 use palpate::fem::SMALL_STRAIN_LIMIT;
 use palpate::force_map::{Certificate, ForceMap};
+use palpate::refusal::Refusal;
 
 /// The certificate of a computed map; in JSON without what it says of every pose.
 ///
@@ -58,24 +59,45 @@ impl Serialize for Quality {
     }
 }
 
+/// The warning of a gel at the limit of small strain.
+///
 /// Implements: REP-015.
-pub(super) fn warnings(quality: Option<&Quality>, gamma: f64) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let small = quality.map(|quality| &quality.certificate);
-    let small = small.filter(|of| of.law.is_none());
-    let smallest = small.map(|certificate| certificate.smallest_det);
-    if let Some(smallest) = smallest.filter(|of| of.det < SMALL_STRAIN_LIMIT) {
-        warnings.push(format!(
-            "Small strain is at its limit: det(I + ∇u) falls to {:.3} at depth {} mm, x = {} mm (below {SMALL_STRAIN_LIMIT}); forces near that pose are the linear model's, not a real gel's.",
+pub(super) fn small_strain(quality: Option<&Quality>) -> Option<String> {
+    let certificate = &quality?.certificate;
+    let smallest = certificate.smallest_det;
+    let is_low = certificate.law.is_none() && smallest.det < SMALL_STRAIN_LIMIT;
+    let (limit, forces) = match smallest.det > 0.0 {
+        true => ("at", "are the linear model's, not a real gel's"),
+        false => ("beyond", "mean nothing: the gel passes through itself"),
+    };
+    is_low.then(|| {
+        format!(
+            "Small strain is {limit} its limit: det(I + ∇u) falls to {:.3} at depth {} mm, x = {} mm (below {SMALL_STRAIN_LIMIT}); forces near that pose {forces}.",
             smallest.det,
             millimetres(smallest.depth),
             millimetres(smallest.lateral),
-        ));
-    }
+        )
+    })
+}
+
+/// The warnings of a map with a γ, and of it and its reference as a `pair`.
+///
+/// Implements: REP-015.
+pub(super) fn warnings(
+    quality: Option<&Quality>,
+    gamma: f64,
+    pair: Result<(), Refusal>,
+) -> Vec<String> {
+    let mut warnings: Vec<String> = small_strain(quality).into_iter().collect();
     if gamma == 0.0 {
         warnings.push(
             "No signal: the forces equal the reference's, so nothing can be detected.".into(),
         );
+    }
+    if let Err(why) = pair {
+        warnings.push(format!(
+            "The signal is not that of an inclusion alone: {why}."
+        ));
     }
     warnings
 }

@@ -117,7 +117,9 @@ pub(super) fn name_of(phantom: &Phantom) -> Option<&'static str> {
 }
 
 fn explanations(theory: &Theory) -> Result<Vec<Explanation>, Refusal> {
-    if theory.reference.phantom().and_then(name_of) != Some("none") {
+    // The subjects felt the paper's depth.
+    let (_, is_of_paper) = probe_depth(theory.reference.table().depths());
+    if !is_of_paper || theory.reference.phantom().and_then(name_of) != Some("none") {
         return Ok(Vec::new());
     }
     // Half a sweep is the whole one only of a gel that is its own mirror image, and with friction none is.

@@ -46,7 +46,8 @@ fn judge_values(
     unit_roundoff: f64,
 ) -> Outcome {
     let difference = |wanted: &Wanted| wanted.compare(&wanted.value, found, unit_roundoff).err();
-    let Some(first) = values.iter().find_map(difference) else {
+    let differences = values.iter().filter_map(difference);
+    let Some(worst) = differences.min_by_key(|of| of.class) else {
         return Outcome::Right;
     };
     // One bit for each key; no op has nearly 64 keys.
@@ -62,8 +63,8 @@ fn judge_values(
         (bug.flag.clone(), keys(&is_its))
     });
     Outcome::Wrong(Wrong {
-        class: first.class,
-        reason: first.to_string(),
+        class: worst.class,
+        reason: worst.to_string(),
         traces: Traces {
             all: keys(&|_| true),
             right: keys(&|wanted| difference(wanted).is_none()),

@@ -62,6 +62,7 @@ pub fn judge_files(
     let version = if is_table {
         columns::judge_table(&mut judged, &String::from_utf8_lossy(&answered))
             .map_err(|message| Invalid::new(answers.display(), message))?;
+        judged.notes.push(NO_CAPABILITIES.into());
         String::new()
     } else {
         judge_lines(&mut judged, &answered)
@@ -88,6 +89,10 @@ fn part_asked(suite: Suite, text: &str) -> Result<Suite, String> {
     Ok(suite.part(|case| ids.contains(&case.id)))
 }
 
+/// A note on answers among which none is to capabilities.
+const NO_CAPABILITIES: &str =
+    "no answer to capabilities: the program is taken to claim the ops with an answer";
+
 /// Judges lines of answers. Returns the version of the program, if there is one.
 fn judge_lines(answers: &mut Answers, text: &[u8]) -> String {
     let (mut lines, mut claims) = (Vec::new(), None);
@@ -108,9 +113,7 @@ fn judge_lines(answers: &mut Answers, text: &[u8]) -> String {
         };
         let ids: HashSet<String> = lines.iter().filter_map(id).collect();
         answers.claim_answered(|id| ids.contains(id));
-        let note =
-            "no answer to capabilities: the program is taken to claim the ops with an answer";
-        answers.notes.push(note.into());
+        answers.notes.push(NO_CAPABILITIES.into());
     }
     while answers.ask().is_some() {}
     for line in lines {

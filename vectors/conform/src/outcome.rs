@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-/// The kind of mistake in a wrong answer.
+/// The kind of mistake in a wrong answer, the most serious first.
 ///
 /// Implements: ORA-058.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Class {
     /// A wrong number.

@@ -77,8 +77,8 @@ impl Profile {
             "unit_roundoff = {u} is not from 0 to 0.25"
         );
         ensure!(
-            0.0 < smallest && smallest < 1.0 && 1.0 < largest,
-            "smallest = {smallest} and largest = {largest}, but 0 < smallest < 1 < largest must hold"
+            0.0 < smallest && smallest < 1.0 && 1.0 <= largest,
+            "smallest = {smallest} and largest = {largest}, but 0 < smallest < 1 <= largest must hold"
         );
         Ok(profile)
     }

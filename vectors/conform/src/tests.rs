@@ -503,6 +503,7 @@ fn a_wrong_answer_has_a_class() {
         (0, json!({"ok": {"a": 1}}), "protocol"),
         (0, json!({"ok": {"a": "1", "b": 2}}), "protocol"),
         (0, json!({"ok": {"a": null, "b": 2}}), "range"),
+        (0, json!({"ok": {"a": null, "b": 3}}), "mathematics"),
         (0, json!({"ok": 1}), "protocol"),
         (0, json!({"error": {"code": "x"}}), "range"),
         (0, json!({"error": null}), "protocol"),

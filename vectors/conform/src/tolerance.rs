@@ -199,7 +199,7 @@ pub struct Difference {
 /// Compares the value at `place` with the expected one.
 ///
 /// # Errors
-/// The first difference that exceeds the limit.
+/// Of the differences that exceed the limit, the first of the most serious class.
 ///
 /// Implements: ORA-046.
 pub fn compare(
@@ -210,12 +210,13 @@ pub fn compare(
 ) -> Result<(), Difference> {
     let (class, text) = match (expected, found) {
         (Value::Array(expected), Value::Array(found)) if expected.len() == found.len() => {
-            let mut pairs = expected.iter().zip(found).enumerate();
-            return pairs.try_for_each(|(index, (expected, found))| {
+            let pairs = expected.iter().zip(found).enumerate();
+            let differences = pairs.filter_map(|(index, (expected, found))| {
                 let condition = limit.condition.entry(index);
                 let limit = Limit { condition, ..limit };
-                compare(&format!("{place}[{index}]"), expected, found, limit)
+                compare(&format!("{place}[{index}]"), expected, found, limit).err()
             });
+            return differences.min_by_key(|of| of.class).map_or(Ok(()), Err);
         }
         (Value::Array(expected), Value::Array(found)) => {
             let (found, expected) = (found.len(), expected.len());

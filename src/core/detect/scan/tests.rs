@@ -88,6 +88,16 @@ fn scans_that_cannot_be_are_refused() {
     assert!(scan.maximum(short, 0..=1).is_err());
 }
 
+// Verifies: DET-005, DET-054. θ is −1.5e308, 5e307 and −1.5e308: a parabola beyond the largest number.
+#[test]
+fn a_top_beyond_the_range_of_numbers_is_refused() {
+    let (template, record) = ([1e154], [-1e154, 1e154, -1e154]);
+    let template = Force::new(&template[..], &[0.0]);
+    let scan = Scan::new(3, template, Force::new(1.0, 1.0)).unwrap();
+    let found = scan.maximum(Force::new(&record, &[0.0; 3]), 0..=2);
+    assert!(found.is_err(), "{found:?}");
+}
+
 // Verifies: DET-050, DET-052.
 #[test]
 fn noise_that_is_no_power_of_two_counts_by_its_square() {

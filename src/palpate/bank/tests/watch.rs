@@ -349,6 +349,48 @@ fn a_record_that_no_hypothesis_explains_is_not_answered() {
     );
 }
 
+// Verifies: SEQ-023.
+#[test]
+fn a_lateral_force_of_the_other_sign_hides_no_inclusion() {
+    // Beside the bump of the normal force, one of the lateral force that goes from one sign to the other.
+    let sideways = |map: ForceMap, size: f64| {
+        let table = map.table();
+        let (depths, laterals) = (table.depths().to_vec(), table.laterals().to_vec());
+        let lateral = Matrix::from_fn(depths.len(), laterals.len(), |_, column| {
+            let from: f64 = laterals[column] / 0.9e-3;
+            size * from * (-0.5 * from * from).exp()
+        });
+        let forces = Force::new(lateral, table.normal().clone());
+        let table = ForceTable::new(depths, laterals, forces).unwrap();
+        measured(map.phantom().cloned(), table)
+    };
+    let inclusion = sideways(map(Some((0.0, 4.0, 8.0)), &[4e-3]), 0.6);
+    let reference = sideways(map(None, &[4e-3]), 0.0);
+    let bank = Bank::new(reference, vec![inclusion.clone()]).unwrap();
+    let exact = samples(&record(&inclusion, None, 0.0, 1.0));
+    let question = WatchQuestion {
+        noise_sd: Force::new(0.05, 0.4),
+        ..question(USUAL)
+    };
+    let taken = |sign: f64| {
+        let mut watcher = Watcher::new(&bank, &question).unwrap();
+        let noise = |channel, at| Generator::new(8, channel).normal(0, at);
+        for (at, (x, lateral, normal)) in (0..).zip(exact.iter().copied()) {
+            let lateral = lateral.map(|force| sign * (force + 0.05 * noise(0, at)));
+            watcher
+                .push(x, lateral, normal + 0.4 * noise(1, at))
+                .unwrap();
+        }
+        watcher.answer().unwrap()
+    };
+    assert_eq!(taken(1.0).decision, Some(Decision::Inclusion));
+    let found = taken(-1.0);
+    assert_eq!(
+        (found.decision, found.excluded, &found.causes[..]),
+        (None, 0, &[Cause::Channels][..])
+    );
+}
+
 // Verifies: SEQ-020, SEQ-021, SEQ-022, SEQ-023, SEQ-026.
 #[test]
 fn a_sensor_set_to_zero_never_excludes_a_place() {

@@ -418,8 +418,12 @@ impl FiniteModel {
         };
         let free =
             |&at: &usize| (0..2).all(|k| self.system.unknown(self.mesh.surface[at], k).is_some());
-        let mut under = (0..self.mesh.surface.len()).filter(free).filter(is_under);
-        let first = under.next().unwrap_or(0);
+        let all = || (0..self.mesh.surface.len()).filter(free);
+        let mut under = all().filter(is_under);
+        // Of a probe between two nodes, the one nearest to it.
+        let away = |at: &usize| (self.mesh.nodes[self.mesh.surface[*at]][0] - pose.lateral).abs();
+        let nearest = || all().min_by(|a, b| away(a).total_cmp(&away(b)));
+        let first = under.next().or_else(nearest).unwrap_or(0);
         first..under.next_back().map_or(first + 1, |last| last + 1)
     }
 

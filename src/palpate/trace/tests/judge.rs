@@ -430,6 +430,23 @@ const USUAL: &[Unknown] = {
     &[Offset, Drift, Gain, Variance]
 };
 
+// Verifies: TRC-077, TRC-065.
+#[test]
+fn a_prior_that_outweighs_both_channels_is_no_contradiction() {
+    let (without, with) = (gel(0.0), gel(0.5));
+    // θ is some 240, and ln(P0/P1) 691.
+    let question = Question {
+        unknown: USUAL,
+        noise: noise(Some(Force::new(0.1, 0.1)), Correlation::OfRecord),
+        prior_h1: 1e-300,
+        ..question(4e-3)
+    };
+    let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+    let found = question.judge(hypotheses, &sweep(0.5, 1)).unwrap();
+    let verdict = (found.decision, &found.causes[..]);
+    assert_eq!(verdict, (Some(Decision::NoInclusion), &[][..]));
+}
+
 // Verifies: TRC-070, TRC-075, TRC-016.
 #[test]
 fn a_record_that_cannot_be_judged_has_a_cause() {

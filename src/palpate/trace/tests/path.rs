@@ -386,6 +386,7 @@ fn above_the_gel_there_is_no_force() {
     assert_eq!(slope[2], 0.0);
     // N/m of the normal force: 1e3.
     assert_near(slope[3], 1e3, 1e-9);
+    assert!(table.path(&[f64::NEG_INFINITY], &[0.0]).is_err());
     // A map that begins in the gel says nothing of what is above it.
     let deep = table_of(&[1e-3, 2e-3], &[0.0, 1e-3], |d, _| [0.0, d]);
     assert!(along(&[0.0], &[-1.0]).expected(&deep, 0.0).is_err());

@@ -29,7 +29,7 @@ pub fn figures(run: &Run, found: &Findings) -> Result<Vec<Plan>, Refusal> {
     let mut plans = Vec::new();
     if !run.maps.is_empty() {
         let panels = signals(run, found)?.into();
-        plans.push(plan("signals", None, signal_words(found), panels));
+        plans.push(plan("signals", None, signal_words(run, found), panels));
     }
     let depth = run.study.as_ref().map(|study| study.plan.probe_depth);
     for map in run.reference_and_maps() {
@@ -138,8 +138,13 @@ fn signals(run: &Run, found: &Findings) -> Result<[Panel; 2], Refusal> {
     Ok(panels(laterals, headings, lines))
 }
 
-fn signal_words(found: &Findings) -> Words {
+fn signal_words(run: &Run, found: &Findings) -> Words {
     let depth = millimetres(found.probe_depth_m);
+    let phantom = run.reference.phantom();
+    let changes = match phantom.is_some_and(|of| of.probe().friction == 0.0) {
+        true => " The lateral force changes sign over an inclusion.",
+        false => "",
+    };
     let peaks = found.maps.iter().map(|map| {
         let [normal, lateral] = [map.peak_normal, map.peak_lateral].map(|of| fixed(of.force_n, 3));
         format!("{}: {normal} N normal, {lateral} N lateral", label(map))
@@ -149,7 +154,7 @@ fn signal_words(found: &Findings) -> Words {
         format!(
             "What inclusions add to the force on the probe as it sweeps over the gel at depth {depth} mm: the template of the matched \
              filter (2), (4). The paper shows no such figure, but its “roughly 0.5 N” and its 340 mN for 6.6 mm are peaks of such \
-             curves. The lateral force changes sign over an inclusion."
+             curves.{changes}"
         ),
         format!(
             "Two line charts of force against lateral position, one curve for each phantom. Peaks: {}.",

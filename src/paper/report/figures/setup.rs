@@ -207,7 +207,16 @@ fn words(phantom: &Phantom, name: &str, key: &[Line]) -> Words {
     let material = |name: &str, of: &Material| {
         let [modulus, ratio] = [of.youngs_modulus / 1e3, of.poisson_ratio];
         let [modulus, ratio] = [trimmed(modulus, 3), trimmed(ratio, 6)];
-        format!("{name}: E = {modulus} kPa, ν = {ratio}")
+        let mut words = format!("{name}: E = {modulus} kPa, ν = {ratio}");
+        if of.fibre_modulus != 0.0 {
+            let [more, angle] = [of.fibre_modulus / 1e3, of.fibre_angle_deg].map(|x| trimmed(x, 3));
+            words += &format!(", along fibres at {angle}° {more} kPa more");
+        }
+        if of.yeoh_c20 != 0.0 {
+            let second = trimmed(of.yeoh_c20 / 1e3, 3);
+            words += &format!(", Yeoh's second coefficient {second} kPa");
+        }
+        words
     };
     let layers = phantom.layers().iter();
     let layers = first(layers.map(|of| material(&of.name, &of.material)));

@@ -10,11 +10,12 @@ use askama::Template;
 use super::inputs::{Survival, survival};
 use super::text::printable;
 use super::{
-    Comparison, Figure, Findings, MapFindings, Quality, Run, Settings, TheoryFindings, Topic,
-    Value, paper, text,
+    Comparison, Explanation, Figure, Findings, MapFindings, Quality, Run, Settings, TheoryFindings,
+    Topic, Value, paper, text,
 };
 use crate::psychophysics::noise::SUMS;
 use crate::study::{Band, Change, Conclusion, Kind, StudyResults};
+use palpate::phantom::Geometry;
 
 /// How the page looks.
 ///
@@ -95,7 +96,10 @@ impl Page<'_> {
         let weights = &bridge.conditions.get(paper::FEM_PLAYBACK)?.weights;
         let [from, to] =
             [weights.first()?, weights.last()?].map(|of| text::millimetres(of.half_sweep_m));
-        let range = format!("±{from} to ±{to} mm");
+        let (range, on) = match from == to {
+            true => (format!("±{from} mm"), "what of it counts"),
+            false => (format!("±{from} to ±{to} mm"), "how far they swept"),
+        };
         let worst = "explained worst by the whole level of the normal force, whose peak the paper's noise estimate rests on";
         let is_worst = weights.iter().filter(|of| of.level_fits_worst()).count();
         Some(if is_worst == 0 {
@@ -103,7 +107,7 @@ impl Page<'_> {
         } else if is_worst < weights.len() {
             format!(
                 "do not tell whether subjects feel the level of the normal force or its change along the sweep: over sweeps of {range}, \
-                 that depends on how far they swept"
+                 that depends on {on}"
             )
         } else if weights.iter().all(|of| of.left.upper < 1.0) {
             format!("are {worst}, over every sweep of {range}, and reject it")
@@ -112,6 +116,19 @@ impl Page<'_> {
                 "are {worst}, over every sweep of {range}, but do not reject it over all of them"
             )
         })
+    }
+
+    /// The depths of the inclusions whose answers are set against forces.
+    fn answered(&self) -> String {
+        let bridge = self.found.bridge.iter();
+        let names = bridge.flat_map(|bridge| &bridge.inclusions);
+        text::joined(names.map(|of| of.name.into()), ", ")
+    }
+
+    /// Whether the gel of the reference is a body of revolution.
+    fn is_axisymmetric(&self) -> bool {
+        let phantom = self.run.reference.phantom();
+        phantom.is_some_and(|of| of.geometry() == Geometry::Axisymmetric)
     }
 
     /// The noise that explains the answers to FEM playback at 6.6 mm by the peak signal: ours beside the paper's.
@@ -196,13 +213,21 @@ fn fate(of: &Conclusion) -> &'static str {
     }
 }
 
+/// An explanation by the forces of another theory, where it has a signal.
+fn explained<'a>(theory: &'a TheoryFindings, explanation: &Explanation) -> Option<&'a Explanation> {
+    let mut explanations = theory.explanations.iter();
+    explanations.find(|of| of.name == explanation.name)
+}
+
 /// To which depth of the probe each map of one theory serves on a gel of another, in words.
 fn serving(on: &TheoryFindings, of: &TheoryFindings) -> String {
     let each = on.templates.iter().map(|template| {
         let first = template.at.iter().position(|at| !at.serves);
         let how_far = match (first, &template.at[..]) {
-            (_, []) | (Some(0), _) => "at no depth".into(),
+            (_, []) => "at a depth that is unknown, for want of a signal".into(),
             (None, _) => "at every depth".into(),
+            (_, at) if at.iter().all(|at| !at.serves) => "at no depth".into(),
+            (Some(0), _) => "at greater depths alone".into(),
             (Some(next), at) => format!("to {} mm", text::millimetres(at[next - 1].depth_m)),
         };
         format!("{} {how_far}", template.name)

@@ -205,3 +205,21 @@ fn the_page_begins_with_no_more_than_holds_over_every_sweep() {
     assert_has(&opening(&run), "are explained worst by the whole level");
     assert_has(&opening(&run), ", over every sweep of ±5 to ±10 mm, ");
 }
+
+// Verifies: REP-015, REP-020, REP-041.
+#[test]
+fn the_page_names_the_answers_that_count_and_a_map_of_another_gel() {
+    let mut run = paper_run();
+    run.maps = run.maps.drain(1..3).collect();
+    let page = made(&run).page;
+    assert_has(
+        &page,
+        "FEM playback at 4.6, 6.6 mm |the answers at 4.6, 6.6",
+    );
+    let alone = "The signal is not that of an inclusion alone: ";
+    assert!(!page.contains(alone));
+    let phantom = run.maps[0].phantom().unwrap();
+    let other = phantom.changed(|parts| parts.layers[0].material.youngs_modulus *= 2.0);
+    run.maps[0] = map(other.ok(), &DEPTHS, |_| 0.3, |_| 0.0);
+    assert_has(&made(&run).page, alone);
+}

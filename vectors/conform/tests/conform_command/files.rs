@@ -97,6 +97,8 @@ fn a_table_holds_questions_and_answers() {
     let (right, groups) = (total(&verdict, "right"), verdict["groups"].as_array());
     let groups = groups.unwrap().len();
     assert!(right > 2245 && groups == 29, "{right} {groups}");
+    let notes = verdict["notes"].to_string();
+    assert!(notes.contains("no answer to capabilities"), "{notes}");
     // A digit, a row too few, a row that is none.
     let text = fs::read_to_string(folder.join("a.csv")).unwrap();
     let mut rows = text.lines();

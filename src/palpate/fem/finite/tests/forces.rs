@@ -94,7 +94,18 @@ fn nothing_locks_towards_incompressibility() {
     );
 }
 
-// Verifies: FIN-008, MAP-006.
+// Verifies: FEM-085, FIN-005.
+#[test]
+fn a_needle_between_two_nodes_has_no_force() {
+    let needle = builtin("none").changed(|parts| parts.probe.radius = 0.1e-3);
+    let model = Model::new(&needle.unwrap(), 2e-3, Contact::default()).unwrap();
+    for depth in [0.0, 0.002] {
+        let solution = model.solve(pose(depth, 0.125)).unwrap();
+        assert_eq!(solution.force.normal, 0.0, "{depth}");
+    }
+}
+
+// Verifies: FIN-008, FEM-040, MAP-006.
 #[test]
 fn a_map_says_its_law_and_is_symmetric_without_friction() {
     let phantom = builtin("6.6");
