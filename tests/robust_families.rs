@@ -377,7 +377,7 @@ fn nor_does_it_from_the_exact_model() {
     let bank = bank();
     let (with, without) = (disc_of(&bank), bank.reference());
     let [table, gel] = [with, without].map(at_depth);
-    let hypotheses = Hypotheses::of_tables(without.table(), with.table()).unwrap();
+    let hypotheses = Hypotheses::of_tables(&gel, &table).unwrap();
     let question = exact_question(None);
     let search = BankSearch {
         question,

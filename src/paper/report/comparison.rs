@@ -288,7 +288,7 @@ fn shares(bridge: &Bridge) -> Option<Vec<Option<Comparison>>> {
 
 /// The depths of the inclusions whose answers are fitted.
 fn named(bridge: &Bridge) -> String {
-    joined(bridge.inclusions.iter().map(|of| of.name.into()), ", ")
+    joined(bridge.inclusions.iter().map(|of| of.name.clone()), ", ")
 }
 
 /// FEM playback with the paper's own convention: the peak of the normal force.

@@ -122,7 +122,7 @@ impl Page<'_> {
     fn answered(&self) -> String {
         let bridge = self.found.bridge.iter();
         let names = bridge.flat_map(|bridge| &bridge.inclusions);
-        text::joined(names.map(|of| of.name.into()), ", ")
+        text::joined(names.map(|of| of.name.clone()), ", ")
     }
 
     /// Whether the gel of the reference is a body of revolution.
