@@ -10,11 +10,11 @@ mod paths;
 use std::collections::BTreeMap;
 
 use families::{DEPTH, Ends, GELS, Happens, MOTIONS, nothing, plain};
-use palpate::bank::{Bank, BankPlan, BankSearch};
+use palpate::bank::{Bank, BankPlan};
 use palpate::detect::Decision;
 use palpate::fem::{Contact, Model};
 use palpate::force::Force;
-use palpate::force_map::{ForceMap, ForceTable, Hypotheses};
+use palpate::force_map::{ForceMap, ForceTable};
 use palpate::phantom::{Phantom, PhantomParts};
 use palpate::robust::{
     BankHypotheses, GelChanges, GelUncertainty, RobustAnswer, RobustDetector, RobustPlace,
@@ -368,49 +368,6 @@ fn a_lateral_force_that_is_not_what_it_is_said_to_be_hides_no_inclusion() {
         }
         // With the bank a force of the other sign is too weak to tell.
         assert!(seen > 0, "{stream}");
-    }
-}
-
-// Verifies: TRC-077.
-#[test]
-fn nor_does_it_from_the_exact_model() {
-    let bank = bank();
-    let (with, without) = (disc_of(&bank), bank.reference());
-    let [table, gel] = [with, without].map(at_depth);
-    let hypotheses = Hypotheses::of_tables(&gel, &table).unwrap();
-    let question = exact_question(None);
-    let search = BankSearch {
-        question,
-        bank: &bank,
-        prior: None,
-        simulations: None,
-    };
-    let judged = |table: &ForceTable, wrong: fn(f64) -> f64, stream: u64, trial: u64| {
-        let [lateral, normal] = record(table, (plain, nothing), 0.05, stream, trial);
-        let lateral: Vec<f64> = lateral.into_iter().map(wrong).collect();
-        let record = Record::new("sweep", &positions(), Force::new(&lateral, &normal)).unwrap();
-        let by_maps = question
-            .judge(hypotheses, &record)
-            .map(|of| (of.decision, of.causes));
-        let by_bank = search.locate(&record).map(|of| (of.decision, of.causes));
-        [by_maps, by_bank]
-    };
-    for (stream, wrong) in (1200..).zip(WRONG) {
-        let answers = (0..10).flat_map(|trial| judged(&table, wrong, stream, trial));
-        // A channel that holds its value is refused.
-        let answers: Vec<_> = answers.flatten().collect();
-        let is_none = |of: &&(Option<Decision>, _)| of.0 == Some(Decision::NoInclusion);
-        assert_eq!(answers.iter().find(is_none), None, "{stream}");
-        let seen = answers
-            .iter()
-            .filter(|of| of.1 == [Cause::Channels])
-            .count();
-        assert_eq!(seen > 0, stream < 1202, "{stream}");
-    }
-    // Where nothing is hidden, all is answered.
-    let answers = (0..10).flat_map(|trial| judged(&gel, |force| force, 1210, trial));
-    for answer in answers {
-        assert_eq!(answer.unwrap(), (Some(Decision::NoInclusion), vec![]));
     }
 }
 
