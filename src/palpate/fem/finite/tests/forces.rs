@@ -105,7 +105,7 @@ fn a_needle_between_two_nodes_has_no_force() {
     }
 }
 
-// Verifies: FIN-008, FEM-040, MAP-006.
+// Verifies: FIN-008, MAP-006.
 #[test]
 fn a_map_says_its_law_and_is_symmetric_without_friction() {
     let phantom = builtin("6.6");
