@@ -47,17 +47,24 @@ fn group(name: &str) -> (&'static str, &'static [&'static str]) {
     found.map_or(("", &[]), |&(_, claim, requirements)| (claim, requirements))
 }
 
+/// The limits of a check that were fixed in a version.
+macro_rules! limits {
+    ($version:literal) => {
+        concat!(
+            "The theorem that the figure names, at the α of the ledger. Fixed in ",
+            $version,
+            "."
+        )
+    };
+}
+
 /// Runs a check of the battery with the seed of the tests, and with each defect that it must see.
 pub fn outcome(check: &Check) -> Outcome {
     let (text, requirements) = group(check.name);
     let limits = match check.name.split('_').next() {
-        Some("robust" | "sequential") => {
-            "The theorem that the figure names, at the α of the ledger. Fixed in 0.3.0."
-        }
-        Some("nuisance" | "ljung" | "bank") => {
-            "The theorem that the figure names, at the α of the ledger. Fixed in 0.2.0."
-        }
-        _ => "The theorem that the figure names, at the α of the ledger. Fixed in 0.1.0.",
+        Some("robust" | "sequential") => limits!("0.3.0"),
+        Some("nuisance" | "ljung" | "bank") => limits!("0.2.0"),
+        _ => limits!("0.1.0"),
     };
     let claim = Claim {
         name: check.name,

@@ -54,13 +54,13 @@ pub fn certified_map_while(
     model.check_poses(depths, laterals)?;
     let coarser = |ratio: f64| {
         let size = ratio * model.mesh_size();
-        let solved = || -> Result<(usize, ForceTable), FemError> {
+        let forces = || -> Result<(usize, ForceTable), FemError> {
             let coarser = Model::new(model.phantom(), size, model.surface().contact)?;
             let table = coarser.table(depths, laterals, solved)?;
             Ok((coarser.mesh().nodes.len(), table))
         };
         let part = format!("the mesh of {} mm for the error bands", mm(size));
-        solved().map_err(|error| match error {
+        forces().map_err(|error| match error {
             FemError::Refused(of) => FemError::Refused(of.of_part(&part).into()),
             FemError::Pose(of) => FemError::Pose(of.of_part(&part).into()),
             other => other,

@@ -287,7 +287,7 @@ fn shares(bridge: &Bridge) -> Option<Vec<Option<Comparison>>> {
 }
 
 /// The depths of the inclusions whose answers are fitted.
-fn named(bridge: &Bridge) -> String {
+pub(super) fn named(bridge: &Bridge) -> String {
     joined(bridge.inclusions.iter().map(|of| of.name.clone()), ", ")
 }
 

@@ -7,6 +7,7 @@ use core::iter::once;
 
 use askama::Template;
 
+use super::comparison::named;
 use super::inputs::{Survival, survival};
 use super::text::printable;
 use super::{
@@ -116,13 +117,6 @@ impl Page<'_> {
                 "are {worst}, over every sweep of {range}, but do not reject it over all of them"
             )
         })
-    }
-
-    /// The depths of the inclusions whose answers are set against forces.
-    fn answered(&self) -> String {
-        let bridge = self.found.bridge.iter();
-        let names = bridge.flat_map(|bridge| &bridge.inclusions);
-        text::joined(names.map(|of| of.name.clone()), ", ")
     }
 
     /// Whether the gel of the reference is a body of revolution.
