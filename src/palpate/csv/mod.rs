@@ -214,8 +214,6 @@ impl<'a, const N: usize> Header<'a, N> {
         let mut found = header.found.iter().flatten();
         match found.find(|found| found.by == By::Unitless) {
             None => Ok(header),
-            // The units may still come.
-            Some(_) if header.at + 1 == lines.len() => Ok(header),
             Some(open) => {
                 let found = format!("column {} has no unit", open.place + 1);
                 Err((found, lines[header.at]))

@@ -230,10 +230,6 @@ mod tests {
             read(&lines).unwrap(),
             [[0.0, 0.0, 1.5], [1e-3, 0.0, 1.6005]]
         );
-        assert_eq!(
-            read(&["position,force", "mm,N", "0,1.5"]).unwrap(),
-            [[0.0, 0.0, 1.5]]
-        );
         // Nothing but numbers stands below them.
         let later = read(&["position_mm;Fz", "0;1", "mm;mN"]).unwrap_err();
         assert!(later.starts_with("-:3: "), "{later}");
