@@ -1,6 +1,6 @@
 //! The proved core of palpate: what decides and what moves a hand, without `std`, without allocation, and on `libm` alone.
 //!
-//! It goes into the C library and onto a microcontroller, and `proofs/` covers it: 3,400 lines of code. Read it in this order:
+//! It goes into the C library and onto a microcontroller, and `proofs/` covers it: 3,200 lines of code. Read it in this order:
 //!
 //! | module | content | paper |
 //! |---|---|---|

@@ -195,10 +195,11 @@ fn pivot(diagonal: f64, sum: DoubleDouble, order: usize, row: usize) -> Result<f
 /// Checks that a covariance of `order` rows, row by row, is symmetric to rounding.
 ///
 /// # Errors
-/// An entry below the diagonal that differs from its mirror image.
+/// Another number of entries; an entry below the diagonal that differs from its mirror image.
 ///
 /// Implements: DET-043.
 pub fn check_symmetric(covariance: &[f64], order: usize) -> Result<(), DetectError> {
+    check_length("covariance", order.saturating_mul(order), covariance.len())?;
     /// Asymmetry that rounding explains, relative to the two standard deviations.
     const TOLERANCE: f64 = 1e-12;
     let entry = |row: usize, column: usize| covariance[row * order + column];

@@ -187,7 +187,14 @@ fn statistic(
             if energy == 0.0 {
                 0.0
             } else {
-                cross.value() / libm::sqrt(energy * samples as f64) / noise.factor
+                let weight = libm::sqrt(energy * samples as f64);
+                // Where that overflows the quotient would be 0.
+                let cross = if weight.is_finite() {
+                    cross.value()
+                } else {
+                    f64::NAN
+                };
+                cross / weight / noise.factor
             }
         });
     representable("y_x", y.lateral)?;

@@ -33,17 +33,13 @@
 //! ```
 
 pub mod coloured;
-pub mod correlation;
 pub mod decision;
 pub mod matched_filter;
-pub mod mixture;
 mod noise;
 pub mod noise_budget;
 pub mod nuisance;
 pub mod scan;
 pub mod sequential;
-pub mod simulate;
-pub mod weber;
 
 pub use decision::{
     Costs, Decision, ErrorRates, bayes_threshold, decide, error_rates, gamma_from_two_afc,

@@ -39,7 +39,8 @@ pub fn noise_budget(
     let remaining = if used < total_allowed {
         // (T − u)(T + u) instead of T² − u²: no cancellation beyond that of T − u, and no overflow
         // of squares.
-        libm::sqrt(total_allowed - used) * libm::sqrt(total_allowed + used)
+        let sum = representable("total_allowed", total_allowed + used)?;
+        libm::sqrt(total_allowed - used) * libm::sqrt(sum)
     } else {
         0.0
     };

@@ -304,7 +304,7 @@ impl SubspaceStatistic {
 
 impl SubspaceTest {
     /// ln of the likelihood ratio. Where the level is unknown, each likelihood is its mean over all levels, ln s uniform:
-    /// θ = (ν + 1)/2 ln [(ν + T²)/(ν + (T − γ)²)].
+    /// θ = (ν + 1)/2 ln [(ν + T²)/(ν + (T − γ)²)]; NaN if these squares overflow.
     ///
     /// Implements: NUI-007.
     pub fn theta(&self) -> f64 {
@@ -313,6 +313,9 @@ impl SubspaceTest {
             None => gamma * (t - 0.5 * gamma),
             Some(nu) => {
                 let squares = nu + (t - gamma) * (t - gamma);
+                if squares == f64::INFINITY {
+                    return f64::NAN;
+                }
                 let more = gamma * (2.0 * t - gamma) / squares;
                 // Near −1, a number has lost what counts.
                 let ratio = match more < -0.5 {
@@ -332,7 +335,8 @@ impl SubspaceTest {
         }
     }
 
-    /// The least T at which θ is at least `eta`.
+    /// The T from which on θ is at least `eta`: with an unknown level of the noise and η < 0, it is so again far below 0, where θ goes
+    /// back to 0.
     ///
     /// # Errors
     /// η not finite.

@@ -31,12 +31,7 @@ pub fn at_least(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError
     check(successes, trials)?;
     check_probability("p", p)?;
     let (k, n) = (successes as f64, trials as f64);
-    // The smaller tail by summation, the larger as its complement.
-    Ok(if k > n * p {
-        outwards(k, n, p, 1.0 - p)
-    } else {
-        1.0 - outwards(n - k + 1.0, n, 1.0 - p, p)
-    })
+    Ok(upper(k, n, p, 1.0 - p))
 }
 
 /// Pr(X ≤ successes) for X ~ Binomial(trials, p).
@@ -49,11 +44,7 @@ pub fn at_most(successes: u64, trials: u64, p: f64) -> Result<f64, NumericError>
     check(successes, trials)?;
     check_probability("p", p)?;
     let (k, n) = (successes as f64, trials as f64);
-    Ok(if k < n * p {
-        outwards(n - k, n, 1.0 - p, p)
-    } else {
-        1.0 - outwards(k + 1.0, n, p, 1.0 - p)
-    })
+    Ok(upper(n - k, n, 1.0 - p, p))
 }
 
 /// The least number from `low` to `high` for which `holds`, which goes on holding above it; `high` + 1 if there is none.
@@ -65,7 +56,7 @@ pub fn first(
     high: u64,
     holds: impl Fn(u64) -> Result<bool, NumericError>,
 ) -> Result<u64, NumericError> {
-    let (mut low, mut end) = (low, high + 1);
+    let (mut low, mut end) = (low, high.saturating_add(1));
     while low < end {
         let middle = low + (end - low) / 2;
         match holds(middle)? {
@@ -94,12 +85,12 @@ pub fn clopper_pearson(
     let lower = if successes == 0 {
         0.0
     } else {
-        least_p(|p| at_least(successes, trials, p), tail)
+        least_p(|p| at_least(successes, trials, p), tail)?
     };
     let upper = if successes == trials {
         1.0
     } else {
-        least_p(|p| at_most(successes, trials, p).map(|tail| -tail), -tail)
+        least_p(|p| at_most(successes, trials, p).map(|tail| -tail), -tail)?
     };
     Ok(Bounds { lower, upper })
 }
@@ -123,7 +114,7 @@ pub fn wilson(successes: u64, trials: u64, confidence: f64) -> Result<Bounds, Nu
     let upper = (sum + half_width) / (n + square);
     let lower = k * (k / n) / (sum + half_width);
     Ok(Bounds {
-        lower,
+        lower: if successes == 0 { 0.0 } else { lower },
         upper: if successes == trials { 1.0 } else { upper },
     })
 }
@@ -144,18 +135,22 @@ fn check(successes: u64, trials: u64) -> Result<(), NumericError> {
 
 /// The p at which an increasing function of p reaches `value`, to the last bit: bisection over the
 /// bits of p, so that small p keep their digits.
-fn least_p(increasing: impl Fn(f64) -> Result<f64, NumericError>, value: f64) -> f64 {
-    let (mut low, mut high) = (0, 1.0_f64.to_bits());
-    while high - low > 1 {
-        let middle = low + (high - low) / 2;
-        // An error cannot occur for 0 < p < 1; it would count as "too small".
-        if increasing(f64::from_bits(middle)).is_ok_and(|found| found > value) {
-            high = middle;
-        } else {
-            low = middle;
-        }
+fn least_p(
+    increasing: impl Fn(f64) -> Result<f64, NumericError>,
+    value: f64,
+) -> Result<f64, NumericError> {
+    let is_above = |bits| Ok(increasing(f64::from_bits(bits))? > value);
+    let above = first(1, 1.0_f64.to_bits() - 1, is_above)?;
+    Ok(f64::from_bits(above - 1))
+}
+
+/// Pr(X ≥ k), with q = 1 − p: the smaller tail by summation, the larger as its complement.
+fn upper(k: f64, n: f64, p: f64, q: f64) -> f64 {
+    if k > n * p {
+        outwards(k, n, p, q)
+    } else {
+        1.0 - outwards(n - k + 1.0, n, q, p)
     }
-    f64::from_bits(low)
 }
 
 /// Pr(X ≥ k) for k above the mean: the terms fall off from k on, each the one before times

@@ -4,8 +4,7 @@
 //! those of `libm`, sums run in an order that the source fixes, and no fused multiply-add is used.
 
 pub mod binomial;
-pub(crate) mod compensated;
-pub mod dispersion;
+pub mod compensated;
 pub mod error;
 pub mod noncentral;
 pub mod normal;

@@ -59,37 +59,33 @@ impl Generator {
 
     /// The standard normal deviate with number `index` of a trial.
     pub fn normal(&self, trial: u64, index: u64) -> f64 {
-        let word = self.words([index / 4, trial, 0, 0])[(index % 4) as usize];
-        self.deviate(word, trial, index)
+        let mut deviate = [0.0];
+        self.batch(trial, index, &mut deviate);
+        deviate[0]
     }
 
     /// Fills `deviates` with the standard normal deviates `first`, `first` + 1, … of a trial; 0
     /// follows 2⁶⁴ − 1.
     pub fn normals(&self, trial: u64, first: u64, deviates: &mut [f64]) {
-        let unaligned = (first.wrapping_neg() % 4).min(deviates.len() as u64) as usize;
-        let (head, body) = deviates.split_at_mut(unaligned);
         let mut index = first;
-        for deviate in head {
-            *deviate = self.normal(trial, index);
-            index = index.wrapping_add(1);
-        }
-        for body in body.chunks_mut(BATCH) {
-            self.batch(trial, index, body);
+        for deviates in deviates.chunks_mut(BATCH) {
+            self.batch(trial, index, deviates);
             index = index.wrapping_add(BATCH as u64);
         }
     }
 
-    /// Up to [`BATCH`] deviates from an index that is a multiple of 4, in three passes that keep
-    /// the processor busier than one: all words, all candidates, and then the few candidates that
-    /// lie at an edge.
+    /// Up to [`BATCH`] deviates in three passes that keep the processor busier than one: all words, all candidates, and then the few
+    /// candidates, 0.7 %, that do not lie in a rectangle that is wholly under the curve.
     fn batch(&self, trial: u64, first: u64, deviates: &mut [f64]) {
-        let mut words = [[0; 4]; BATCH / 4];
+        // Four to an index that is a multiple of 4.
+        let before = (first % 4) as usize;
+        let mut words = [[0; 4]; BATCH / 4 + 1];
         let mut index = first;
-        for words in &mut words[..deviates.len().div_ceil(4)] {
+        for words in &mut words[..(before + deviates.len()).div_ceil(4)] {
             *words = self.words([index / 4, trial, 0, 0]);
             index = index.wrapping_add(4);
         }
-        let words = words.as_flattened();
+        let words = &words.as_flattened()[before..];
         let mut at_an_edge = 0_u64;
         for (number, (deviate, &word)) in deviates.iter_mut().zip(words).enumerate() {
             let (x, layer) = candidate(word);
@@ -102,16 +98,6 @@ impl Generator {
             let (x, layer) = candidate(words[number]);
             deviates[number] =
                 self.deviate_at_an_edge(x, layer, trial, first.wrapping_add(number as u64));
-        }
-    }
-
-    /// The deviate that a word of the trial's own counter leads to.
-    #[inline]
-    fn deviate(&self, word: u64, trial: u64, index: u64) -> f64 {
-        match candidate(word) {
-            // 99.3 % end here: the point lies in a rectangle that is wholly under the curve.
-            (x, layer) if x.abs() < EDGES[layer + 1] => x,
-            (x, layer) => self.deviate_at_an_edge(x, layer, trial, index),
         }
     }
 

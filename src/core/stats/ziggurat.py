@@ -38,6 +38,6 @@ print("//! Table of the ziggurat for the normal law; written by `ziggurat.py`, c
 print("/// Where the tail begins.\npub(super) const TAIL: f64 = %r;" % float(r))
 print("/// Right edges xᵢ of the layers, from the base (whose area includes the tail) to the top.")
 print(f"#[rustfmt::skip]\npub(super) const EDGES: [f64; {len(xs)}] = [")
-for start in range(0, len(xs), 4):
-    print("    " + ", ".join(repr(float(x)) for x in xs[start : start + 4]) + ",")
+for start in range(0, len(xs), 6):
+    print("    " + ", ".join(repr(float(x)) for x in xs[start : start + 6]) + ",")
 print("];")

@@ -93,7 +93,11 @@ fn ziggurat_has_layers_of_equal_area_under_the_curve() {
 fn deviates_reach_every_part_of_the_ziggurat() {
     // The words that must end in the base's tail, at either sign, and in the top layer's wedge.
     let generator = Generator::new(1, 2);
-    let far = |word| generator.deviate(word, 5, 9);
+    let far = |word| {
+        let (x, layer) = candidate(word);
+        assert!(x.abs() >= EDGES[layer + 1]);
+        generator.deviate_at_an_edge(x, layer, 5, 9)
+    };
     assert!(far(0x7FFF_FFFF_FFFF_FE00) > TAIL);
     assert!(far(0x8000_0000_0000_0000) < -TAIL);
     let (x, layer) = candidate(0x7FFF_FFFF_FFFF_FFFF);

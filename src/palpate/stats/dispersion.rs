@@ -7,8 +7,7 @@ use super::tails::chi_square_tail;
 const ROUGH_BELOW: f64 = 5.0;
 
 /// χ² of the subjects against one share of right answers for all.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Dispersion {
     /// Σ (kᵢ − nᵢp̂)²/(nᵢ p̂ (1−p̂)).
     pub chi_square: f64,
@@ -28,7 +27,7 @@ pub struct Dispersion {
 /// all wrong.
 ///
 /// # Errors
-/// Never for counts that fit their trials.
+/// Never for counts that fit their trials, of at least one pair each.
 ///
 /// Implements: PSY-031, ERR-007.
 pub fn dispersion(counts: &[(u32, u32)]) -> Result<Option<Dispersion>, NumericError> {

@@ -1,7 +1,7 @@
 //! Expected values: mpmath 1.4.1 at 40 digits. θ is the logarithm of the quotient of the densities.
 
-use super::super::theta_of_record;
 use super::*;
+use crate::detect::theta_of_record;
 use palpate_asserts::assert_near;
 
 const OBSERVED: Force<&[f64]> = Force::new(&[0.1, 0.5, -0.2], &[1.7, 1.9, 1.3]);

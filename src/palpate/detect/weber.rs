@@ -3,7 +3,7 @@
 
 use super::{DetectError, Force};
 use crate::stats::compensated::{self, DoubleDouble};
-use crate::stats::error::{check_not_negative, check_positive, representable};
+use crate::stats::error::{check_not_negative, check_positive, check_samples, representable};
 
 /// The variance of one sample is floor² + (fraction · F)², where F is the force that the hypothesis
 /// expects.
@@ -38,9 +38,15 @@ pub fn theta_weber(
     noise: Force<WeberNoise>,
 ) -> Result<f64, DetectError> {
     let samples = f0.lateral.len();
-    observed.check("observed_x", "observed_y", samples)?;
-    f0.check("f0_x", "f0_y", samples)?;
-    f1.check("f1_x", "f1_y", samples)?;
+    let names = [
+        ("observed_x", "observed_y"),
+        ("f0_x", "f0_y"),
+        ("f1_x", "f1_y"),
+    ];
+    for ((x, y), forces) in names.into_iter().zip([observed, f0, f1]) {
+        check_samples(x, forces.lateral, samples)?;
+        check_samples(y, forces.normal, samples)?;
+    }
     for noise in noise.into_array() {
         check_positive("floor", noise.floor)?;
         check_not_negative("fraction", noise.fraction)?;
@@ -49,7 +55,7 @@ pub fn theta_weber(
     let theta = forces.map(|((observed, (f0, f1)), noise)| {
         compensated::sum(samples, |i| {
             let (sd0, sd1) = (noise.sd(f0[i]), noise.sd(f1[i]));
-            // Both quotients may be large and nearly equal: (z0 − z1)(z0 + z1) keeps the digits of z0 − z1.
+            // Both quotients may be large and nearly equal, where the difference of their squares would lose more digits.
             let z0 = (observed[i] - f0[i]) / sd0;
             let z1 = (observed[i] - f1[i]) / sd1;
             let half = DoubleDouble::product(0.5 * (z0 - z1), z0 + z1);

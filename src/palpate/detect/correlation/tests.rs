@@ -1,5 +1,3 @@
-use std::vec::Vec;
-
 use super::*;
 use crate::stats::random::Generator;
 

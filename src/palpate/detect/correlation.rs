@@ -2,7 +2,7 @@
 
 use super::DetectError;
 use crate::stats::compensated;
-use crate::stats::error::check_length;
+use crate::stats::error::{check_length, check_samples, representable};
 use crate::stats::tails::chi_square_tail;
 
 /// The sum over the autocorrelation ends at this multiple of what it has come to.
@@ -28,10 +28,13 @@ fn autocorrelation(series: &[f64]) -> impl Fn(usize) -> f64 {
 /// Ljung and Box: n (n + 2) Σ ρ_k²/(n − k) is χ² with as many degrees of freedom, for a long series.
 ///
 /// # Errors
-/// No lags, or as many as there are samples.
+/// No lags, or as many as there are samples; NaN, infinity, or squares that are not finite.
 ///
 /// Implements: NUI-020.
 pub fn ljung_box(series: &[f64], lags: usize) -> Result<f64, DetectError> {
+    check_samples("series", series, series.len())?;
+    let power = compensated::dot(series, series, 1.0).value();
+    representable("power", power)?;
     let samples = series.len() as f64;
     check_length("lags", lags.clamp(1, series.len().max(2) - 1), lags)?;
     let of = autocorrelation(series);
@@ -43,7 +46,7 @@ pub fn ljung_box(series: &[f64], lags: usize) -> Result<f64, DetectError> {
     chi_square_tail(samples * (samples + 2.0) * sum, lags as f64)
 }
 
-/// How many samples count as one: τ = 1 + 2 Σ ρ_k over the lags k below 5 τ (Sokal), at least 1.
+/// How many samples of a finite series count as one: τ = 1 + 2 Σ ρ_k over the lags k below 5 τ (Sokal), at least 1.
 ///
 /// Implements: NUI-021.
 pub fn correlation_length(series: &[f64]) -> f64 {
