@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::choice::{Count, Perceived, best_lapse, deviance, log_likelihood};
 use super::dispersion::Overdispersion;
 use super::rates::{CONFIDENCE, OpenBounds};
-use super::search::{interval, maximum};
+use super::search::{interval, largest, maximum};
 use super::{Column, Condition, Result};
 use palpate::stats::noncentral::student_point;
 use palpate::stats::normal::{self, lower_tail};
@@ -15,8 +15,10 @@ use palpate::stats::tails::chi_square_tail;
 const SPANS: f64 = 3.0;
 /// The spread is searched from a hundredth of that span to ten of it.
 const SPREADS: [f64; 2] = [0.01, 10.0];
-/// Cells of the searches.
-const CELLS: u32 = 8;
+/// Cells of the search for the spread, a factor of 1.3 wide.
+const SPREAD_CELLS: u32 = 24;
+/// Cells of the search for the midpoint between two depths, where a steep fall is.
+const MIDPOINT_CELLS: u32 = 4;
 
 /// The psychometric function ½ + (½ − λ) Φ((m − d)/s) of the depth d that fits a condition best.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -71,8 +73,9 @@ pub fn psychometric(
         return Ok(None);
     };
     let span = last - first;
+    let beyond = [first - SPANS * span, last + SPANS * span];
     let model = Model {
-        midpoints: [first - SPANS * span, last + SPANS * span],
+        midpoints: [&beyond[..1], &distinct, &beyond[1..]].concat(),
         log_spreads: SPREADS.map(|share| libm::log(share * span)),
         counts: (0..depths.len())
             .map(|j| Count::pooled(condition, j))
@@ -86,7 +89,8 @@ pub fn psychometric(
 struct Model {
     depths: Vec<f64>,
     counts: Vec<Count>,
-    midpoints: [f64; 2],
+    /// The ends of the search, and between them the depths.
+    midpoints: Vec<f64>,
     log_spreads: [f64; 2],
 }
 
@@ -112,20 +116,20 @@ impl Model {
 
     /// The best midpoint for a spread.
     fn over_midpoints(&self, log_spread: f64, lapse: Option<f64>) -> (f64, f64) {
-        let [low, high] = self.midpoints;
-        maximum(|m| self.value(m, log_spread, lapse), low, high, 4 * CELLS)
+        let value = |m| self.value(m, log_spread, lapse);
+        largest(value, &self.midpoints, MIDPOINT_CELLS)
     }
 
     /// The best spread for a midpoint.
     fn over_spreads(&self, midpoint: f64) -> f64 {
         let [low, high] = self.log_spreads;
-        maximum(|s| self.value(midpoint, s, None), low, high, CELLS).1
+        maximum(|s| self.value(midpoint, s, None), low, high, SPREAD_CELLS).1
     }
 
     /// The best spread, with the midpoint that belongs to it.
     fn over_both(&self, lapse: Option<f64>) -> (f64, f64) {
         let [low, high] = self.log_spreads;
-        maximum(|s| self.over_midpoints(s, lapse).1, low, high, CELLS)
+        maximum(|s| self.over_midpoints(s, lapse).1, low, high, SPREAD_CELLS)
     }
 
     fn fit(&self, dispersion: Overdispersion) -> Result<Psychometric> {
@@ -149,6 +153,7 @@ impl Model {
         let deviance = deviance(&self.counts, top);
         let degrees = self.counts.len() as u32 - 3;
         let of_spread = |s| self.over_midpoints(s, None).1;
+        let ends = [0, self.midpoints.len() - 1].map(|at| self.midpoints[at]);
         let spread = parameter(log_spread, &of_spread, self.log_spreads);
         let mut lapse = parameter(lapse, &|lapse| self.over_both(Some(lapse)).1, [0.0, 0.5]);
         for bounds in [&mut lapse.bounds, &mut lapse.dispersed_bounds] {
@@ -156,7 +161,7 @@ impl Model {
             bounds.lower = bounds.lower.or(Some(0.0));
         }
         Ok(Psychometric {
-            midpoint_m: parameter(midpoint, &|m| self.over_spreads(m), self.midpoints),
+            midpoint_m: parameter(midpoint, &|m| self.over_spreads(m), ends),
             spread_m: spread.map(libm::exp),
             predicted: perceived.iter().map(|at| at.right(lapse.value)).collect(),
             lapse,

@@ -30,8 +30,16 @@ pub fn maximum(f: impl Fn(f64) -> f64, low: f64, high: f64, cells: u32) -> (f64,
     if inside.1 > best.1 { inside } else { best }
 }
 
+/// The largest of the maxima between each two of these `ends`, each with so many cells, and where it is.
+pub fn largest(f: impl Fn(f64) -> f64, ends: &[f64], cells: u32) -> (f64, f64) {
+    let of = |ends: &[f64]| maximum(&f, ends[0], ends[1], cells);
+    let maxima = ends.windows(2).map(of);
+    let larger = |a: (f64, f64), b: (f64, f64)| if b.1 > a.1 { b } else { a };
+    maxima.fold((f64::NAN, f64::NEG_INFINITY), larger)
+}
+
 /// The top of a function with one maximum between two ends.
-pub fn golden(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> (f64, f64) {
+fn golden(f: &impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> (f64, f64) {
     const SHARE: f64 = 0.618_033_988_749_894_8;
     let mut left = high - SHARE * (high - low);
     let mut right = low + SHARE * (high - low);

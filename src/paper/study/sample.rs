@@ -183,6 +183,9 @@ impl<'a> Sampler<'a> {
         let depth = 1e-3 * of_study(PROBE_DEPTH, 1e3 * self.plan.probe_depth);
         let mut settings = self.plan.settings;
         settings.noise_sd_n = of_study(NOISE_SD, settings.noise_sd_n);
+        let noise_sd = settings.noise_sd_n;
+        let wrong = Refusal::value(NOISE_SD, noise_sd, "above 0 N in each sample");
+        wrong.when(noise_sd.is_nan() || noise_sd <= 0.0)?;
         let (mut maps, mut depths) = (Vec::new(), Vec::new());
         for (at, own) in self.plan.all_phantoms().enumerate() {
             let solved = self.solved(own, &values, mesh * self.plan.mesh_size, depth);

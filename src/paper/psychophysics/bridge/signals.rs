@@ -22,10 +22,7 @@ pub struct Signal {
 ///
 /// Implements: PSY-070, CLI-081.
 pub fn sweep(map: &ForceMap, half: Option<f64>) -> Result<ForceMap, Refusal> {
-    let whole = match map.table().laterals() {
-        [first, _, ..] if first.abs() <= SAME_POSITION => map.mirrored()?,
-        _ => map.clone(),
-    };
+    let whole = map.whole()?;
     let Some(half) = half else { return Ok(whole) };
     let inside = whole.table().laterals().iter().copied();
     let inside: Vec<f64> = inside.filter(|&x| is_within(x, half)).collect();

@@ -8,15 +8,13 @@ use super::common::{Signals, is_inside};
 use super::{Observations, SubjectFit};
 use crate::psychophysics::Result;
 use crate::psychophysics::choice::{Count, Perceived, deviance, log_likelihood};
-use crate::psychophysics::search::{golden, maximum};
+use crate::psychophysics::search::maximum;
 use palpate::stats::{binomial, tails::gamma_tail};
 
-/// The largest share of lapses that is searched.
-const LARGEST_LAPSE: f64 = 0.25;
+/// The largest share of lapses that is searched: that of guesses.
+const LARGEST_LAPSE: f64 = 0.5;
 /// Cells of the search for it.
-const CELLS: u32 = 5;
-/// How far ln(1/σ) of a subject may lie from that without lapses.
-const LAPSE_RANGE: [f64; 2] = [-0.1, 2.0];
+const CELLS: u32 = 10;
 
 /// This many times the largest 1/σ of the search, every difference above 0 is perceived, to the last bit.
 const SURE: f64 = 1e6;
@@ -36,15 +34,9 @@ pub fn by_subject_with_lapse(
     observed: &Observations,
     without: &SubjectFit,
 ) -> Result<SubjectFit> {
-    let best = |counts: &Vec<Count>| signals.best(counts, Some(0.0)).0;
-    let logs: Vec<f64> = observed.subjects.iter().map(best).collect();
     let profile = |lapse: f64| {
-        let best = |(counts, from): (&Vec<Count>, &f64)| {
-            let value =
-                |log: f64| log_likelihood(counts, &signals.perceived(libm::exp(log)), lapse);
-            golden(&value, from + LAPSE_RANGE[0], from + LAPSE_RANGE[1]).1
-        };
-        observed.subjects.iter().zip(&logs).map(best).sum::<f64>()
+        let best = |counts: &Vec<Count>| signals.best(counts, Some(lapse)).1;
+        observed.subjects.iter().map(best).sum::<f64>()
     };
     let (lapse, _) = maximum(profile, 0.0, LARGEST_LAPSE, CELLS);
     let with = assemble(signals, observed, lapse, 1)?;

@@ -129,7 +129,7 @@ fn by_deviance(a: &&WeightFit, b: &&WeightFit) -> core::cmp::Ordering {
     a.deviance.total_cmp(&b.deviance)
 }
 
-/// Which of the normal force, the same less its mean and the lateral force has the largest deviance.
+/// Which of the normal force, the same less its mean and the lateral force has the largest deviance; `None` if two have it.
 fn worst(statistic: Statistic, fits: [Option<WeightFit>; 3]) -> Option<Convention> {
     let conventions = [
         (Channel::Normal, Mean::Kept),
@@ -138,7 +138,13 @@ fn worst(statistic: Statistic, fits: [Option<WeightFit>; 3]) -> Option<Conventio
     ];
     let pairs = fits.iter().zip(conventions);
     let known = pairs.filter_map(|(fit, convention)| Some((fit.as_ref()?, convention)));
-    let (_, (channel, mean)) = known.max_by(|a, b| by_deviance(&a.0, &b.0))?;
+    let mut known: Vec<_> = known.collect();
+    known.sort_by(|a, b| by_deviance(&b.0, &a.0));
+    let &(worst, (channel, mean)) = known.first()?;
+    let is_shared = |(other, _): &(&WeightFit, _)| other.deviance == worst.deviance;
+    if known.get(1).is_some_and(is_shared) {
+        return None;
+    }
     Some(Convention {
         statistic,
         channel,
