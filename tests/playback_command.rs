@@ -77,7 +77,10 @@ fn a_noisy_map_that_is_refused_is_played_when_smoothed() {
     here.write("noisy.csv", noisy.to_csv());
     here.succeed("import-map noisy.csv --out noisy.json");
     let refused = here.refused("play --map noisy.json --seconds 1");
-    assert!(refused.contains("passively"), "{refused}");
+    assert!(
+        refused.contains("where device and force limit allow"),
+        "{refused}"
+    );
     let output = here.run("import-map noisy.csv --smooth-mm 5 --out smooth.json");
     let said = text(&output.stderr);
     let expected =

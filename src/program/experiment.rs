@@ -16,16 +16,19 @@ use super::input::{lines, next};
 use super::numbers::newtons;
 use super::output::{print, say};
 use super::platform::{raise_priority, stop_on_signals};
-use super::playback::{DeviceArguments, limits};
+use super::playback::{DeviceArguments, limits, played_map};
 use super::progress::bar;
 use palpate::force_map::{ForceMap, Hypotheses};
-use palpate::hid::HapticDevice;
 use palpate::hid::simulated::Trajectory;
+use palpate::hid::{HapticDevice, check};
 use palpate::journal::Journal;
 use palpate::servo::{Limits, LoadedTable};
 use palpate_paper::psychophysics::{
     Answer, Experiment, Felt, IdealObserver, Interval, Setup, Trial, present,
 };
+
+/// The force limit of each component, N.
+const LARGEST_FORCE: f32 = 4.0;
 
 /// How long a person may take to press the deadman.
 const PATIENCE: Duration = Duration::from_secs(600);
@@ -192,10 +195,13 @@ impl<'a> Pairs<'a> {
     fn read(arguments: &'a ExperimentArguments) -> Result<Pairs<'a>, CliError> {
         let capabilities = open(arguments)?.capabilities();
         let capabilities = capabilities.map_err(CliError::refused("device"))?;
-        let limits = limits(4.0, &capabilities)?;
+        // A weaker device plays what it can.
+        let largest = f32::from(capabilities.largest_force_mn) / 1e3;
+        let limits = limits(largest.min(LARGEST_FORCE), &capabilities)?;
+        check(&capabilities, &limits).map_err(CliError::refused("device"))?;
         let damping = arguments.device.damping(&capabilities);
         let sample = |path: &Path| {
-            let map = ForceMap::read(path)?;
+            let map = played_map(path)?;
             let table = LoadedTable::passive(map.table(), &damping, &limits);
             let table = table.map_err(CliError::refused(path.display()))?;
             Ok::<Sample, CliError>((map, table))

@@ -12,14 +12,13 @@ use serde::Serialize;
 use super::error::refuse;
 use super::output::{note, print, read, say, shows_progress, tell, write};
 use super::platform::{PROMISE, raise_priority, stop_on_signals};
-use super::playback::{DeviceArguments, limits, loaded_map};
+use super::playback::{DeviceArguments, limits, loaded_map, played_map};
 use super::{CliError, Format};
 use palpate::file::check_writable;
-use palpate::force_map::ForceMap;
 use palpate::hid::simulated::Trajectory;
 use palpate::hid::supervise::{HELD_UP, PlayOptions, play as supervised};
 use palpate::hid::timing::Timing;
-use palpate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session};
+use palpate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session, check};
 use palpate::servo::{Limits, LoadedTable};
 
 /// Most cycles that are recorded: as many as can be read again.
@@ -46,7 +45,7 @@ pub struct PlayArguments {
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     /// Replays a recorded session and compares every force with the recording
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["seconds", "record", "max_force"])]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["seconds", "record", "max_force", "format"])]
     replay: Option<PathBuf>,
     /// Output format of the summary
     #[arg(long, value_enum, default_value_t = Format::Table)]
@@ -57,10 +56,10 @@ pub struct PlayArguments {
 ///
 /// Implements: CLI-063, CLI-064, CLI-065, CLI-066, CLI-067, HID-094, HID-101, HID-110.
 pub fn play(arguments: &PlayArguments) -> Result<(), CliError> {
+    arguments.device.check()?;
     if let Some(file) = &arguments.replay {
         return replay(arguments, file);
     }
-    arguments.device.check()?;
     let probing = Trajectory::probing(4e-3, 9e-3, Duration::from_millis(1500));
     let seconds = arguments.seconds.map(Duration::from_secs);
     let is_simulated = arguments.device.is_simulated();
@@ -81,7 +80,7 @@ fn table(
     limits: &Limits,
 ) -> Result<(LoadedTable, f64), CliError> {
     let path = &arguments.map;
-    let map = ForceMap::read(path)?;
+    let map = played_map(path)?;
     let both = map.table().both();
     both.map_err(CliError::refused(path.display()))?;
     let damping = arguments.device.damping(capabilities);
@@ -90,8 +89,12 @@ fn table(
         let scaled = LoadedTable::scaled_to_be_passive(map.table(), &damping, limits);
         return scaled.map_err(CliError::refused(file));
     }
-    let refused = |error| failed(format_args!("{file}: {error} (or use --scale)"));
     let loaded = LoadedTable::passive(map.table(), &damping, limits);
+    let helps = || LoadedTable::scaled_to_be_passive(map.table(), &damping, limits).is_ok();
+    let refused = |error| {
+        let remedy = if helps() { " (or use --scale)" } else { "" };
+        failed(format_args!("{file}: {error}{remedy}"))
+    };
     Ok((loaded.map_err(refused)?, 1.0))
 }
 
@@ -103,6 +106,7 @@ fn session(
 ) -> Result<(), CliError> {
     let capabilities = device.capabilities().map_err(failed)?;
     let limits = limits(arguments.max_force, &capabilities)?;
+    check(&capabilities, &limits).map_err(failed)?;
     let (loaded, scale) = table(arguments, &capabilities, &limits)?;
     let options = PlayOptions {
         duration,

@@ -123,11 +123,19 @@ fn damping(capabilities: &Capabilities, delay_periods: u16) -> Damping {
     }
 }
 
+/// The map in a file, over all lateral positions.
+///
+/// Implements: CLI-063, MAP-092.
+pub fn played_map(path: &Path) -> Result<ForceMap, CliError> {
+    let whole = ForceMap::read(path)?.whole();
+    whole.map_err(CliError::refused(path.display()))
+}
+
 /// The servo table of the map in a file.
 ///
 /// Implements: CLI-063.
 pub fn loaded_map(path: &Path) -> Result<LoadedTable, CliError> {
-    let map = ForceMap::read(path)?;
+    let map = played_map(path)?;
     LoadedTable::new(map.table()).map_err(CliError::refused(path.display()))
 }
 

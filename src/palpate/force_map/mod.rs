@@ -304,6 +304,19 @@ impl ForceMap {
         })
     }
 
+    /// This map over all lateral positions: extended by symmetry if it begins at x = 0.
+    ///
+    /// # Errors
+    /// As [`ForceMap::mirrored`].
+    ///
+    /// Implements: MAP-092.
+    pub fn whole(&self) -> Result<ForceMap, Refusal> {
+        match self.table.laterals() {
+            [first, _, ..] if first.abs() <= SAME_POSITION => self.mirrored(),
+            _ => Ok(self.clone()),
+        }
+    }
+
     /// The map of the mirror image of this map's phantom, over the negatives of its lateral positions.
     ///
     /// # Errors

@@ -18,6 +18,9 @@ const LONGEST_WATCHDOG_MS: u16 = 100;
 /// Reports that one cycle takes from the queue at most: what the kernel of the system keeps.
 const QUEUE: usize = 64;
 
+/// How long a device that plays nothing yet may be silent.
+const LONGEST_SILENCE: Duration = Duration::from_secs(1);
+
 /// How often a stop is sent to a device that does not take it.
 const STOP_TRIES: usize = 5;
 
@@ -135,7 +138,13 @@ fn as_it_is(error: impl fmt::Display) -> Refusal {
 }
 
 /// Refuses a device that could leave a force on the hand, or that does not make these limits.
-fn check(capabilities: &Capabilities, limits: &Limits) -> Result<(), Refusal> {
+///
+/// # Errors
+/// What is wrong with the device, or with the limits on it.
+///
+/// Implements: HID-017.
+pub fn check(capabilities: &Capabilities, limits: &Limits) -> Result<(), Refusal> {
+    Units::new(capabilities).map_err(as_it_is)?;
     let (watchdog_ms, period_us) = (capabilities.watchdog_ms, capabilities.period_us);
     Refusal::state("the device reports every 0 µs, not every 1 µs or more", "")
         .when(period_us == 0)?;
@@ -297,12 +306,13 @@ impl<'a, D: HapticDevice> Session<'a, D> {
         Ok((newest, woke))
     }
 
-    /// Cycles until `each` says that it is enough (`false`), a fault has released the force, or the
-    /// device fails; then stops the device. Arms once, as soon as the kernel allows.
+    /// Cycles until `each` says that it is enough (`false`), a fault has released the force, the device fails, or sends no position for
+    /// a second before the kernel, whose watchdog is quicker, is armed; then stops the device. Arms once, as soon as the kernel allows.
     ///
     /// Implements: HID-016, HID-019, HID-024, HID-025, HID-085, HID-089.
     pub fn run(&mut self, mut each: impl FnMut(&Cycle, &Counters) -> bool) -> End {
         let mut ask = false;
+        let mut heard = self.device.now();
         let end = loop {
             ask = !ask && self.mode() == Mode::Disarmed;
             let request = if ask { Request::Arm } else { Request::None };
@@ -310,11 +320,14 @@ impl<'a, D: HapticDevice> Session<'a, D> {
                 Err(error) => break End::Device(error),
                 Ok(cycle) => {
                     let is_enough = !each(&cycle, &self.counters);
+                    heard = cycle.position.map_or(heard, |_| cycle.woke);
+                    let is_silent = cycle.woke.saturating_sub(heard) >= LONGEST_SILENCE;
                     match self.mode() {
                         // A fault is the cause, even if it was enough before the force was released.
                         Mode::Faulted(fault) if is_enough || self.state.force == Force::ZERO => {
                             break End::Fault(fault);
                         }
+                        Mode::Disarmed if is_silent => break End::Fault(Fault::Watchdog),
                         _ if is_enough => break End::Asked,
                         _ => {}
                     }

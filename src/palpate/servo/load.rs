@@ -92,10 +92,14 @@ impl Excess {
     fn refusal(&self) -> Refusal {
         let (what, found, allowed) = (self.what, self.found, self.allowed);
         let scale = self.scale();
+        let remedy = match scale > 0.0 {
+            true => format!("scale the forces by {scale:.4}"),
+            false => "use a device with more damping and friction".into(),
+        };
         let found = format!(
-            "the table has {found:.4} {what}, and the device plays at most {allowed:.4} passively: scale the forces by {scale:.4}"
+            "the table has {found:.4} {what}, where device and force limit allow {allowed:.4} at most"
         );
-        Refusal::state(found, "")
+        Refusal::state(found, remedy)
     }
 }
 
@@ -206,7 +210,7 @@ impl LoadedTable {
     fn excess(&self, damping: &Damping, limits: &Limits) -> Result<Option<Excess>, Refusal> {
         let remedy =
             "give period and resolution above 0, damping and friction at least 0, all finite";
-        let no_device = || Refusal::state(format!("{damping:?} is no device"), remedy);
+        let no_device = || Refusal::state("no device has such numbers", remedy);
         let stiffest = damping.stiffest().ok_or_else(no_device)?;
         let table = self.table();
         let stiffness = stiffness(&table);

@@ -36,19 +36,18 @@ impl Budget {
     /// A cycle may take `cycle` at this percentile of the times, which the verdict is sure of by `confidence_percent`.
     ///
     /// # Errors
-    /// Percents that are not strictly between 0 and 100.
+    /// A percentile that is not strictly between 0 and 100; a confidence below 50 %, with which the lower bound would be above the upper
+    /// one, or not below 100 %.
     pub fn new(
         cycle: Duration,
         percentile: f64,
         confidence_percent: f64,
     ) -> Result<Budget, Refusal> {
-        for (key, percent) in [
-            ("percentile", percentile),
-            ("confidence-percent", confidence_percent),
-        ] {
-            let is_right = percent > 0.0 && percent < 100.0;
-            Refusal::value(key, percent, "above 0 and below 100").when(!is_right)?;
-        }
+        let is_right = percentile > 0.0 && percentile < 100.0;
+        Refusal::value("percentile", percentile, "above 0 and below 100").when(!is_right)?;
+        let is_right = (50.0..100.0).contains(&confidence_percent);
+        let must = "at least 50 and below 100";
+        Refusal::value("confidence-percent", confidence_percent, must).when(!is_right)?;
         Ok(Budget {
             percentile,
             confidence_percent,
@@ -204,7 +203,7 @@ impl Responses {
         let (budget, cycles) = (&self.budget, self.cycles());
         let response_us = Distribution::of(&self.times)?;
         let (lower, upper) = budget.ranks(cycles).ok()?;
-        let budget_us = budget.cycle.as_secs_f64() * 1e6;
+        let budget_us = budget.cycle.as_nanos() as f64 / 1e3;
         let within = cycles - self.misses;
         // The longest of the times that the histogram does not tell from that of a rank.
         let longest = |rank: u64| {

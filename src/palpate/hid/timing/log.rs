@@ -56,7 +56,7 @@ pub fn judge_log(text: &str, budget: Budget) -> Result<Judged, Refusal> {
             let [(_, begin), (line, end)] = [pair[0], pair[1]];
             if end <= begin {
                 let late = "a time above the one before";
-                return Err(Refusal::value(name, end, late).at(line));
+                return Err(Refusal::value(name, format!("{end} s"), late).at(line));
             }
             check_resolved(name, begin, end, &budget).map_err(|refusal| refusal.at(line))?;
             intervals.push(duration(name, line, end - begin)?);
@@ -79,7 +79,8 @@ fn check_resolved(name: &str, begin: f64, end: f64, budget: &Budget) -> Result<(
     let expected = format!(
         "resolved better than to {resolution:.2} µs, which decides whether the budget is kept: subtract the first time from all"
     );
-    Refusal::value(name, end, expected).when(spacing > 0.5e-9 && from_budget <= spacing)
+    Refusal::value(name, format!("{end} s"), expected)
+        .when(spacing > 0.5e-9 && from_budget <= spacing)
 }
 
 fn duration(name: &str, line: usize, seconds: f64) -> Result<Duration, Refusal> {
