@@ -73,9 +73,11 @@ impl Rows {
         self.0.push(Row { key, value, line });
     }
 
-    /// Adds a number of each of several sweeps, or the number of one; a missing one is null.
+    /// Adds a number of each of several sweeps, or the number of one; a missing one is null, and so are those of sweeps that were not
+    /// compared.
     pub fn list(&mut self, key: &'static str, label: &str, numbers: &[Option<f64>]) {
         match numbers {
+            [] => self.number(key, label, None),
             [number] => self.number(key, label, *number),
             _ => {
                 let text = |number: &Option<f64>| number.map_or("none".into(), digits);
@@ -400,10 +402,12 @@ mod tests {
         rows.list("levels", "levels", &[None, Some(1.5), None]);
         rows.list("one", "one", &[Some(2.5)]);
         rows.list("nothing", "nothing", &[None]);
+        rows.list("not_compared", "not compared", &[]);
         let text = rows.table();
         let texts: Vec<&str> = text.lines().map(|line| line[35..].trim()).collect();
         assert_eq!(texts, ["none, 1.500000, none", "2.500000"]);
-        let json = json!({"levels": [null, 1.5, null], "one": 2.5, "nothing": null});
+        let json =
+            json!({"levels": [null, 1.5, null], "one": 2.5, "nothing": null, "not_compared": null});
         assert_eq!(serde_json::to_value(&rows).unwrap(), json);
     }
 }

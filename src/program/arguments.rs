@@ -1,12 +1,13 @@
 //! The command line.
 
 use std::ffi::OsString;
+use std::fs::canonicalize;
 
 use clap::{Parser, Subcommand};
 
 use palpate::version::LONG_VERSION;
 
-use super::error::CliError;
+use super::error::{CliError, refuse};
 use super::{
     bank, calibrate, demo, detect, devices, experiment, import, manual, oracle, play,
     psychophysics, reach, run, simulate, solve, study, timing, watch,
@@ -110,6 +111,39 @@ pub(super) enum Command {
         after_help = "Examples:\n  palpate man > palpate.1\n  palpate man ~/.local/share/man/man1"
     )]
     Man(manual::ManArguments),
+}
+
+/// The options that name a file to write.
+const OUTPUTS: [&str; 5] = ["--out", "--figure", "--record", "--vtu", "--pvd"];
+
+/// Refuses a file to write that another argument names too, so that no file is read and then lost.
+///
+/// Implements: CLI-236.
+pub fn check_outputs(arguments: &[OsString]) -> Result<(), CliError> {
+    // An option and its value, or a name and a file, may be one argument.
+    let apart = |argument: &OsString| {
+        let text = argument.to_string_lossy();
+        let (name, value) = text.split_once('=').unwrap_or(("", &text));
+        [name, value].map(String::from)
+    };
+    let arguments: Vec<_> = arguments.iter().map(apart).collect();
+    let file = |value: &str| canonicalize(value).ok().filter(|path| path.is_file());
+    let files: Vec<_> = arguments.iter().map(|[_, value]| file(value)).collect();
+    for (at, [name, value]) in arguments.iter().enumerate() {
+        let before = at.checked_sub(1).map_or("", |before| &arguments[before][1]);
+        let Some(option) = OUTPUTS.iter().find(|of| [name, before].contains(of)) else {
+            continue;
+        };
+        let same = files
+            .iter()
+            .filter(|file| file.is_some() && **file == files[at]);
+        if same.count() > 1 {
+            refuse!(
+                "{value} is read by this command, which would overwrite it; choose another {option}"
+            );
+        }
+    }
+    Ok(())
 }
 
 /// Reads a command line, the first entry of which is the program's name; runs nothing. A text to print, help or the version, may

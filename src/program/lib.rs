@@ -62,7 +62,9 @@ use output::Format;
 /// ```
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     platform::keep_memory();
-    program(arguments, |arguments: CommandLine| {
+    let given: Vec<OsString> = arguments.into_iter().collect();
+    program(given.clone(), |arguments: CommandLine| {
+        arguments::check_outputs(&given)?;
         output::be_quiet(arguments.quiet);
         match arguments.command {
             Command::Run(arguments) => run::run(&arguments),

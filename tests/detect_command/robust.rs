@@ -193,6 +193,11 @@ fn the_robust_model_is_the_default_and_has_three_answers() {
             "{found}"
         );
         assert_eq!(found["posterior_h1"], Value::Null);
+        // Before it is compared, it has no level and no noise.
+        if cause == "narrow" {
+            let of = ["level", "noise_sd_lateral_n", "noise_sd_normal_n"].map(|key| &found[key]);
+            assert_eq!(of, [&Value::Null; 3], "{found}");
+        }
     }
     // Two sweeps of one place say more than one.
     let theta = |traces: &str, depths: &str| {
@@ -383,6 +388,10 @@ fn measured_maps_need_no_phantom_and_are_seen_if_exchanged() {
         (&json!("inclusion"), Some(0)),
         "{found}"
     );
+    place().write("gel.toml", "height_percent = 0");
+    let asked = format!("detect with.csv {maps} {known} --gel-uncertainty gel.toml");
+    let refused = "--gel-uncertainty needs maps that state their phantom; leave it out";
+    assert_eq!(place().refused(&asked), refused);
     let maps = "--reference inclusion.csv --inclusion none.csv";
     let (found, _) = answer(&format!("with.csv {maps} {known}"));
     assert_eq!(found["causes"][0], "exchanged", "{found}");

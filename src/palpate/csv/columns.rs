@@ -226,8 +226,21 @@ pub(super) struct Found {
     pub factor: f64,
     /// How it was found.
     pub by: By,
-    /// Whether the user stated its unit, which then counts.
-    pub has_stated_unit: bool,
+    /// Who says its unit.
+    pub unit: UnitBy,
+}
+
+/// Who says the unit of a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum UnitBy {
+    /// Nobody: it is the usual one, if there is one.
+    Nobody,
+    /// Its name.
+    Name,
+    /// The user, whose word counts.
+    User,
+    /// Its name and a row of units, which say different ones.
+    Two,
 }
 
 /// How a column is found: by the first that finds one.
@@ -248,15 +261,23 @@ impl Found {
         let of_quantity = |names: &&&[Named]| names.contains(&(self.name, self.power));
         let names = column.iter().find(of_quantity)?;
         let (name, power) = in_unit(names, unit)?;
-        let by = match self.by {
-            By::Unitless => By::Synonym,
-            by => by,
-        };
-        Some(Found {
-            name,
-            power,
-            by,
-            ..self
+        Some(match (self.unit, self.by) {
+            (UnitBy::User, _) => self,
+            (UnitBy::Name, _) if power != self.power => Found {
+                unit: UnitBy::Two,
+                ..self
+            },
+            (_, By::Unitless) => Found {
+                name,
+                power,
+                by: By::Synonym,
+                ..self
+            },
+            _ => Found {
+                name,
+                power,
+                ..self
+            },
         })
     }
 }
@@ -306,13 +327,18 @@ pub(super) fn find(header: &[&str], column: Column, layout: &Layout) -> Result<F
         for by in [By::Name, By::Synonym, By::Unitless] {
             let found = (0..).zip(header).filter_map(|(place, field)| {
                 let (name, power) = read(field, names, by)?;
+                let is_named = by == By::Name || taken_apart(field, names).1.is_some();
                 Some(Found {
                     place,
                     name,
                     power,
                     factor: 1.0,
                     by,
-                    has_stated_unit: false,
+                    unit: if is_named {
+                        UnitBy::Name
+                    } else {
+                        UnitBy::Nobody
+                    },
                 })
             });
             match found.collect::<Vec<_>>()[..] {
@@ -396,7 +422,11 @@ impl Stated {
             power,
             factor: self.sign * by_whole.map_or(self.factor, |_| 1.0),
             by: named.map_or(By::Unitless, |_| By::Name),
-            has_stated_unit: self.unit.is_some(),
+            unit: match (&self.unit, named) {
+                (Some(_), _) => UnitBy::User,
+                (None, Some(_)) => UnitBy::Name,
+                (None, None) => UnitBy::Nobody,
+            },
         })
     }
 }
@@ -530,5 +560,25 @@ mod tests {
             let found = read(TEXT, layout).unwrap_err();
             assert!(found.starts_with(expected), "{layout}: {found}");
         }
+    }
+
+    // Verifies: MAP-047.
+    #[test]
+    fn a_row_of_units_does_not_contradict_the_names() {
+        for (text, column) in [
+            ("a line before\n\npos_mm,Force\nm,N\n1,-3\n", 1),
+            ("position_mm,normal_force_n\nmm,mN\n1,-3\n", 2),
+            ("pos [mm],Load (N)\nmm,mN\n1,-3\n", 2),
+        ] {
+            let found = Rows::parse(text, COLUMNS, "").err().unwrap().to_string();
+            let expected =
+                format!("column {column} has two units, one in its name and one below it,");
+            assert!(found.contains(&expected), "{text}: {found}");
+        }
+        let text = "pos_mm,Load (N)\nm,mN\n1,-3\n";
+        let stated = "position=pos_mm[mm],normal=Load (N)[N]";
+        assert_eq!(read(text, stated), Ok([1e-3, -3.0]));
+        let same = Rows::parse("pos_mm,Load (N)\nmm,N\n1,-3\n", COLUMNS, "");
+        assert_eq!(same.unwrap().rows[0].1, [1e-3, -3.0]);
     }
 }

@@ -6,7 +6,7 @@ use crate::refusal::{Refusal, shortened};
 
 mod columns;
 
-use columns::{By, Found, find, names};
+use columns::{By, Found, UnitBy, find, names};
 pub use columns::{Column, Layout};
 
 /// Lines among which the header is looked for.
@@ -211,13 +211,17 @@ impl<'a, const N: usize> Header<'a, N> {
         }
         let first = || Header::of(lines, 0, columns, layout);
         let header = named.map_or_else(|| first().map_err(|found| (found, lines[0])), Ok)?;
-        let mut found = header.found.iter().flatten();
-        match found.find(|found| found.by == By::Unitless) {
+        let mut wrong = header.found.iter().flatten().filter_map(|found| {
+            let why = match (found.by, found.unit) {
+                (By::Unitless, _) => "has no unit",
+                (_, UnitBy::Two) => "has two units, one in its name and one below it,",
+                _ => return None,
+            };
+            Some(format!("column {} {why}", found.place + 1))
+        });
+        match wrong.next() {
             None => Ok(header),
-            Some(open) => {
-                let found = format!("column {} has no unit", open.place + 1);
-                Err((found, lines[header.at]))
-            }
+            Some(wrong) => Err((wrong, lines[header.at])),
         }
     }
 
@@ -379,13 +383,11 @@ fn in_units<const N: usize>(
             continue;
         }
         match found.in_unit(column, unit) {
-            None if !found.has_stated_unit => return None,
+            None if found.unit != UnitBy::User => return None,
             None => {}
             Some(other) => {
                 has_unit = true;
-                if !found.has_stated_unit {
-                    *found = other;
-                }
+                *found = other;
             }
         }
     }

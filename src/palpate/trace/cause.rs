@@ -30,7 +30,8 @@ pub enum Cause {
     Narrow,
     /// The map with the inclusion has the smaller forces.
     Exchanged,
-    /// The lateral forces are not what they are said to be: the normal ones alone, or those of the other sign, say the opposite.
+    /// The lateral forces are not what they are said to be: the normal ones alone, or those of the other sign, say the opposite, or they
+    /// have too little noise.
     Channels,
     /// Some disturbance explains the record as well as an inclusion does.
     TooWeak,
@@ -55,7 +56,7 @@ impl fmt::Display for Cause {
             Cause::InAir => "samples at the start or at the end are in air: leave them out",
             Cause::Narrow => "the sweep is shorter than half the radius of the probe: check the unit of the positions, or make a longer sweep",
             Cause::Exchanged => "the map with the inclusion has smaller forces than the reference: exchange the maps",
-            Cause::Channels => "the normal forces alone, or the lateral ones with the other sign, say the opposite: check the sign, unit and cable of the lateral force, or leave it out",
+            Cause::Channels => "the lateral forces do not go with the normal ones: check their sign, unit and cable, or leave them out",
             Cause::TooWeak => "the record is too weak to tell an inclusion from what else may bend it",
             Cause::Zeroed => "a sensor that was set to zero on the gel records the same in air as over a gel without an inclusion: set it to zero above the gel",
         })

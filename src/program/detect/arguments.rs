@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 use crate::error::refuse;
 use crate::layout::LayoutArguments;
 use crate::numbers::{length_or_zero, newtons, position, probability, sure_probability, velocity};
+use crate::output::note;
 use crate::{CliError, Format};
 use palpate::csv::Layout;
 use palpate::force::Force;
@@ -319,7 +320,9 @@ impl NoiseArguments {
             "auto" => of(Correlation::OfRecord),
             "white" => of(Correlation::None),
             file => {
-                let blank = Noise::of_blank(&Trace::read(Path::new(file), layout)?)?;
+                let blank = Trace::read(Path::new(file), layout)?;
+                blank.notes().iter().for_each(|text| note(file, text));
+                let blank = Noise::of_blank(&blank)?;
                 let sd = sd.or(blank.sd);
                 Noise { sd, ..blank }
             }

@@ -319,7 +319,9 @@ fn tell(
     let answer = Envelope::new("palpate-detection", 4, rows);
     arguments.format.of_one().print(&answer, || table)?;
     if decision.is_none() {
-        let files = arguments.traces.iter();
+        // A reference sweep can be the one at fault.
+        let references = &arguments.model.reference_sweeps;
+        let files = arguments.traces.iter().chain(references);
         let files: Vec<_> = files.map(|file| file.display().to_string()).collect();
         let (files, why) = (files.join(", "), reasons(causes));
         let message = format!("{files}: cannot be judged: {why}");

@@ -8,6 +8,7 @@ use serde_json::json;
 
 use super::{DetectArguments, Warnings, asked, check_depths, trimmed};
 use crate::CliError;
+use crate::error::refuse;
 use crate::output::note;
 use palpate::bank::Bank;
 use palpate::csv::Layout;
@@ -78,6 +79,9 @@ impl<'a> Asked<'a> {
         let uncertainty = file.map(|file| GelUncertainty::read(file)).transpose()?;
         let uncertainty = uncertainty.unwrap_or_default().beside(self.question.known);
         let reference = self.reference();
+        if file.is_some() && reference.phantom().is_none() {
+            refuse!("--gel-uncertainty needs maps that state their phantom; leave it out");
+        }
         let name = reference.phantom().map_or("", Phantom::name);
         for records in together {
             for depths in self.depths_of_gels(records)? {

@@ -46,7 +46,12 @@ fn phantoms_of_all_kinds_have_sound_meshes() {
             // Triangles are refined above 1.35 times the wanted size, which makes edges of twice the radius of
             // their circle, 1.56, and new points keep 0.6 from others; pieces of lines are rounded to whole numbers of them.
             let field = SizeField::new(&phantom, size);
-            let [short, middle, long] = lengths(&mesh, &field);
+            let [shortest, short, middle, long, longest] = lengths(&mesh, &field);
+            if shortest < 0.1 || longest > 2.6 {
+                wrong.push(format!(
+                    "{what}: edges of {shortest:.3} and {longest:.3} sizes"
+                ));
+            }
             if short < 0.6 || !(0.9..1.1).contains(&middle) || long > 1.56 {
                 wrong.push(format!(
                     "{what}: edges of {short:.2}, {middle:.2}, {long:.2} sizes"

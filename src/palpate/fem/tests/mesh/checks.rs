@@ -242,13 +242,14 @@ pub fn check_angles(mesh: &Mesh) -> f64 {
     angles.fold(180.0, f64::min)
 }
 
-/// A tenth, half and nine tenths of the edges are shorter than these multiples of the wanted size.
-pub fn lengths(mesh: &Mesh, field: &SizeField) -> [f64; 3] {
+/// The shortest edge, the lengths below which a tenth, half and nine tenths of the edges are, and the longest, over the wanted size.
+pub fn lengths(mesh: &Mesh, field: &SizeField) -> [f64; 5] {
     let over_size = |ends: &[u32; 2]| {
         let [a, b] = ends.map(|node| mesh.nodes[node as usize]);
         distance(a, b) / field.at([0, 1].map(|k| 0.5 * (a[k] + b[k])).into())
     };
     let mut lengths: Vec<f64> = edges(mesh).keys().map(over_size).collect();
     lengths.sort_by(f64::total_cmp);
-    [0.1, 0.5, 0.9].map(|share| lengths[(share * lengths.len() as f64) as usize])
+    let last = (lengths.len() - 1) as f64;
+    [0.0, 0.1, 0.5, 0.9, 1.0].map(|share| lengths[(share * last) as usize])
 }
