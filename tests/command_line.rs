@@ -482,3 +482,22 @@ fn a_large_mesh_is_told_before_it_is_made() {
     let nodes: f64 = nodes.split(' ').next().unwrap().parse().unwrap();
     assert!((nodes / 178_918.0 - 1.0).abs() < 0.25, "{told}");
 }
+
+// Verifies: CLI-236.
+#[test]
+fn no_file_is_read_and_then_overwritten() {
+    let here = Place::new("read-and-written");
+    let phantom = include_str!("../docs/phantom.toml");
+    here.write("gel.toml", phantom);
+    for line in [
+        "solve --phantom gel.toml --depths-mm 1 --laterals-mm 0 --mesh-mm 2 --vtu gel.toml",
+        "solve --phantom gel.toml --depths-mm 1 --laterals-mm 0 --mesh-mm 2 --vtu=./gel.toml",
+        "reach --bank gel.toml --noise-sd-n 0.1 --figure gel.toml",
+        "play --record gel.toml --map=gel.toml",
+    ] {
+        let refused = here.refused(line);
+        let expected = "is read by this command, which would overwrite it; choose another --";
+        assert!(refused.contains(expected), "{line}: {refused}");
+        assert_eq!(here.read("gel.toml"), phantom, "{line}");
+    }
+}

@@ -184,7 +184,10 @@ fn csv_and_json_say_the_same_and_gaps_are_counted() {
     let (of_csv, _, error) = watched(WATCH, &above.join("\n"));
     assert_eq!((of_json.len(), code), (81, 3));
     assert_eq!(of_json, of_csv);
-    assert_has(&error, "palpate: -: undecided: an inclusion is open at ");
+    assert_has(
+        &error,
+        "palpate: -: undecided: an inclusion is not excluded at ",
+    );
     let gaps = "position_mm,lateral_force_n,normal_force_n\n0,,1\n0,0,nan\n8.1,0,1\n";
     let (answers, code, _) = watched(WATCH, gaps);
     let last = answers.last().unwrap();
@@ -369,7 +372,7 @@ fn the_figure_shows_what_half_a_sweep_has_told() {
     let [uncovered, open] = [places - covered, covered - excluded];
     let figure = place().read("half.svg");
     let words = format!(
-        "Of 10 places, not covered by the path: {uncovered}, an inclusion is open: {open}, an inclusion is excluded: {excluded}."
+        "Of 10 places, not covered by the path: {uncovered}, an inclusion is not excluded: {open}, an inclusion is excluded: {excluded}."
     );
     assert_has(&figure, &words);
     // A dot for each place, and one in the key for each kind.

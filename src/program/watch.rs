@@ -154,7 +154,7 @@ fn why_undecided(answer: &WatchAnswer) -> String {
     if causes.is_empty() {
         let [open, uncovered] = [places - excluded, places - covered];
         return format!(
-            "-: undecided: an inclusion is open at {open} of {places} places, of which the path has not covered {uncovered}"
+            "-: undecided: an inclusion is not excluded at {open} of {places} places; the path has not covered {uncovered} of them"
         );
     }
     format!("-: cannot be judged: {}", reasons(causes))

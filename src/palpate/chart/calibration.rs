@@ -80,11 +80,9 @@ fn panels_of(of: &Calibration<'_>) -> Result<Vec<Panel>, Refusal> {
         panel.x_name = x_name.into();
         return Ok(vec![panel]);
     }
-    let mut left = residual_panel(
-        "What is left of the force (N)".into(),
-        x,
-        of.noise_of_steps(),
-    );
+    let noise_sd = of.noise_sd()?.map(|sd| sd.estimate);
+    let noise_sd = noise_sd.unwrap_or_else(|| of.noise_of_steps());
+    let mut left = residual_panel("What is left of the force (N)".into(), x, noise_sd);
     left.lines.push(dots(BLUE, points(residuals)));
     left.y = roomy(residuals.iter().copied().chain(left.y));
     left.x_name = x_name.into();

@@ -7,7 +7,7 @@ use crate::bank::{Told, WatchedPlace};
 use crate::refusal::Refusal;
 use crate::text::extremes;
 
-/// The places of a bank by what the samples so far say of them, as an SVG document: not covered, open or excluded. Of several sizes and
+/// The places of a bank by what the samples so far say of them, as an SVG document: not covered, not excluded or excluded. Of several sizes and
 /// moduli at a place the one of which least is known counts.
 ///
 /// # Errors
@@ -28,7 +28,7 @@ pub fn coverage_figure(places: &[WatchedPlace]) -> Result<String, Refusal> {
     };
     let kinds = [
         (Told::Uncovered, GREY, 2, "not covered by the path"),
-        (Told::Open, INK, 7, "an inclusion is open"),
+        (Told::Open, INK, 7, "an inclusion is not excluded"),
         (Told::Excluded, PALETTE[0], 4, "an inclusion is excluded"),
     ];
     let lines = kinds.map(|(told, colour, radius, name)| {
@@ -46,7 +46,7 @@ pub fn coverage_figure(places: &[WatchedPlace]) -> Result<String, Refusal> {
     let panel = Panel {
         x_name: "Lateral position of the inclusion (mm)".into(),
         ..Panel::new(
-            "Depth of its highest point (mm)",
+            "Depth of the inclusion's highest point (mm)",
             [[ends[0] - 1.0, ends[1] + 1.0], round_range(depths)],
             300,
             lines.into(),

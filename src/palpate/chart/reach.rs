@@ -25,13 +25,21 @@ pub fn reach_figure(
     let room = (0.05 * (ends[1] - ends[0])).max(0.5);
     let x = [ends[0] - room, ends[1] + room];
     let deepest = 1e3 * depths.last().copied().unwrap_or_default();
-    let sample = Line::new(INK, Vec::new()).dotted(4);
+    // Smaller dots in dashes, which show where there is but one diameter.
+    let sample = |is_dashed| {
+        let radius = if is_dashed { 2 } else { 4 };
+        Line::new(INK, Vec::new()).dotted(radius).dashed(is_dashed)
+    };
+    let lines = lines(bank, [plain, beside], x, deepest);
+    let is_found = plain.iter().chain(beside).any(|of| of.depth.is_some());
+    let none = "No inclusion of the bank is found, not even at the least depth.";
     let panel = Panel {
         x_name: "Diameter of the inclusion (mm)".into(),
         key: vec![
-            sample.clone().named("nothing unknown"),
-            sample.dashed(true).named(format!("unknown: {unknown}")),
+            sample(false).named("nothing unknown"),
+            sample(true).named(format!("unknown: {unknown}")),
         ],
+        caption: (!is_found).then(|| none.into()).into_iter().collect(),
         ticks: match diameters.len() {
             1..=8 => diameters.iter().map(|diameter| 1e3 * diameter).collect(),
             _ => Vec::new(),
@@ -40,7 +48,7 @@ pub fn reach_figure(
             "Largest depth at which it is found (mm)",
             [x, round_range([deepest].into_iter())],
             300,
-            lines(bank, [plain, beside], x, deepest),
+            lines,
         )
     };
     let alt = reach_in_words(plain, beside, unknown);
@@ -52,7 +60,7 @@ pub fn reach_figure(
 fn lines(bank: &Bank, reached: [&[Reached]; 2], x: [f64; 2], deepest: f64) -> Vec<Line> {
     let moduli = &bank.axes()[3];
     let limit = Line::new(GREY, vec![(x[0], deepest), (x[1], deepest)]);
-    let mut lines = vec![limit.wide(1.2).named("bank's end")];
+    let mut lines = vec![limit.wide(1.2).named("bank's end (found there: or deeper)")];
     for (&modulus, colour) in moduli.iter().zip(PALETTE.into_iter().cycle()) {
         for (reached, is_dashed) in reached.into_iter().zip([false, true]) {
             let of_modulus = reached.iter().filter(|of| of.modulus == modulus);
@@ -61,7 +69,7 @@ fn lines(bank: &Bank, reached: [&[Reached]; 2], x: [f64; 2], deepest: f64) -> Ve
                 2.. if !is_dashed => format!("{} kPa", trimmed(1e-3 * modulus, 3)),
                 _ => String::new(),
             };
-            let line = Line::new(colour, points.collect()).dotted(4);
+            let line = Line::new(colour, points.collect()).dotted(if is_dashed { 2 } else { 4 });
             lines.push(line.dashed(is_dashed).named(name));
         }
     }

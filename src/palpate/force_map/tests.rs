@@ -235,6 +235,15 @@ fn symmetry_extends_a_map_to_negative_positions() {
     assert_eq!(map.phantom().unwrap().name(), "2.6");
 }
 
+// Verifies: MAP-092.
+#[test]
+fn a_whole_map_stays_and_a_half_one_is_extended() {
+    let half = computed(|_| ()).unwrap();
+    let whole = half.whole().unwrap();
+    assert_eq!(whole, half.mirrored().unwrap());
+    assert_eq!(whole.whole(), Ok(whole));
+}
+
 // Verifies: MAP-009.
 #[test]
 fn the_lateral_force_on_the_axis_becomes_zero_or_an_error() {

@@ -3,7 +3,7 @@
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use super::text::millimetres;
+use super::text::{fixed, millimetres};
 use palpate::fem::SMALL_STRAIN_LIMIT;
 use palpate::force_map::{Certificate, ForceMap};
 use palpate::refusal::Refusal;
@@ -72,8 +72,8 @@ pub(super) fn small_strain(quality: Option<&Quality>) -> Option<String> {
     };
     is_low.then(|| {
         format!(
-            "Small strain is {limit} its limit: det(I + ∇u) falls to {:.3} at depth {} mm, x = {} mm (below {SMALL_STRAIN_LIMIT}); forces near that pose {forces}.",
-            smallest.det,
+            "Small strain is {limit} its limit: det(I + ∇u) falls to {} at depth {} mm, x = {} mm (below {SMALL_STRAIN_LIMIT}); forces near that pose {forces}.",
+            fixed(smallest.det, 3),
             millimetres(smallest.depth),
             millimetres(smallest.lateral),
         )

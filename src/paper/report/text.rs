@@ -114,6 +114,14 @@ pub(super) fn error_rate(probability: impl Borrow<f64>) -> String {
     }
 }
 
+/// A number beside the one that it must reach: two decimals, or five where these hide that it does not.
+pub(super) fn against(value: impl Borrow<f64>, needed: impl Borrow<f64>) -> String {
+    let (value, needed) = (*value.borrow(), *needed.borrow());
+    let short = fixed(value, 2);
+    let is_hidden = value < needed && short == fixed(needed, 2);
+    if is_hidden { fixed(value, 5) } else { short }
+}
+
 /// A p-value: small ones by their power of ten.
 pub(super) fn p_value(p: impl Borrow<f64>) -> String {
     match *p.borrow() {

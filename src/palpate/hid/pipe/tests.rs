@@ -142,6 +142,27 @@ fn the_force_is_released_and_the_device_stopped_when_positions_cease() {
     );
 }
 
+// Verifies: HID-112.
+#[test]
+fn a_device_that_is_silent_before_the_loop_is_armed_ends_the_session() {
+    // After three positions without the deadman, or with none at all; the loop arms at the earliest with the second.
+    for positions in [0, 1] {
+        let (cycles, end, written) = session(positions, 10_000);
+        assert_eq!(end, End::Fault(Fault::Watchdog));
+        // A cycle waits 40 ms at the longest for a position.
+        assert!(cycles.len() >= 25, "{}", cycles.len());
+        assert!(cycles.iter().all(|cycle| cycle.force
+            == ForceReport {
+                sequence: cycle.force.sequence,
+                flags: cycle.force.flags,
+                ..ForceReport::default()
+            }));
+        let [.., Written::Control(0), Written::Force(_)] = &written[..] else {
+            panic!("{written:?}")
+        };
+    }
+}
+
 /// Takes note of what is written after it is dropped.
 struct Noting(std::sync::mpsc::Sender<u8>);
 

@@ -240,6 +240,23 @@ fn verdict_on(table: &AnswerTable, maps: &(ForceMap, [ForceMap; 4])) -> Verdict 
     bridged(table, maps).conditions.remove(0).verdict
 }
 
+/// Subjects who are right in six of ten pairs at any depth lapse in four of ten, whether they have one noise or each its own.
+// Verifies: PSY-073.
+#[test]
+fn lapses_up_to_guesses_are_found() {
+    let rows: String = (1..=4)
+        .map(|s| format!("{s},x,100,60,60,60,60\n"))
+        .collect();
+    let text = format!("subject,condition,trials,2.6,4.6,6.6,8.6\n{rows}");
+    let table = AnswerTable::from_csv(&text, "t").unwrap();
+    let observed = Observations::new(&table.conditions()[0], &[0, 1, 2, 3]).unwrap();
+    let signals = Signals(LEVEL_OFF.into());
+    let without = by_subject(&signals, &observed).unwrap();
+    let with = by_subject_with_lapse(&signals, &observed, &without).unwrap();
+    assert_near(with.lapse, 0.4, 1e-3);
+    assert!(with.deviance < 1e-3, "{}", with.deviance);
+}
+
 // Verifies: PSY-080, PSY-081.
 #[test]
 fn the_verdict_follows_the_answers() {

@@ -60,6 +60,18 @@ fn fits_of_table_1() {
     }
 }
 
+/// Scipy, Nelder and Mead from the best of a grid: a fall between two depths that are near to one another.
+// Verifies: PSY-040.
+#[test]
+fn a_steep_fall_between_two_depths_is_found() {
+    let text = "subject,condition,trials,0.43,2.1,2.77,8.43,8.77,13.43\n1,a,10,10,10,9,8,6,5\n2,a,10,10,9,9,8,5,4\n";
+    let found = fitted(&AnswerTable::from_csv(text, "t").unwrap(), 0).unwrap();
+    assert_near(found.midpoint_m.value, 8.518682422e-3, OF_LENGTH);
+    assert_near(found.spread_m.value, 0.205889948e-3, OF_LENGTH);
+    assert_near(found.lapse.value, 0.05, OF_LAPSE);
+    assert_near(found.deviance, 3.078235205866136, 1e-7);
+}
+
 // φ of direct contact is (41.3194 + 47.3455 + 43.1060 + 22.2)/36 = 4.2770; scipy: f.sf(0.1524763/4.2769680, 1, 36).
 // Verifies: PSY-034, PSY-042.
 #[test]

@@ -141,7 +141,10 @@ fn signals(run: &Run, found: &Findings) -> Result<[Panel; 2], Refusal> {
 fn signal_words(run: &Run, found: &Findings) -> Words {
     let depth = millimetres(found.probe_depth_m);
     let phantom = run.reference.phantom();
-    let changes = match phantom.is_some_and(|of| of.probe().friction == 0.0) {
+    // On both sides of it.
+    let laterals = run.reference.table().laterals();
+    let reach = matches!(laterals, [first, .., last] if *first < 0.0 && *last > 0.0);
+    let changes = match reach && phantom.is_some_and(|of| of.probe().friction == 0.0) {
         true => " The lateral force changes sign over an inclusion.",
         false => "",
     };

@@ -6,7 +6,7 @@ use crate::report::inputs;
 use crate::report::text::{extremes, fixed, joined, millimetres, percent, trimmed};
 use crate::report::{Findings, GammaBeside, MapFindings, Run, Topic};
 use crate::study::{Band, Kind};
-use palpate::chart::style::{GREY, INK, PALETTE, VERMILION};
+use palpate::chart::style::{GREY, INK, PALETTE};
 use palpate::chart::{Line, Panel, round_range};
 use palpate::force_map::ForceMap;
 
@@ -21,7 +21,10 @@ pub fn figure(run: &Run, found: &Findings) -> Option<Plan> {
     let beside = &maps.first()?.1.gamma_left.beside;
     let pairs = run.maps.iter().zip(&found.maps);
     let bars = pairs.filter_map(|(map, found)| bar(run, map, 1e3 * found.inclusion_depth_m?));
-    let bars: Vec<_> = bars.collect();
+    let mut bars: Vec<_> = bars.collect();
+    if let Some(first) = bars.first_mut() {
+        *first = first.clone().named("95 % of the draws");
+    }
     let words = words(run, found, &maps, !bars.is_empty());
     let panel = panel(&maps, beside, found.required_gamma, bars);
     let picture = over(DEPTH, [panel]);
@@ -35,7 +38,7 @@ fn bar(run: &Run, map: &ForceMap, depth: f64) -> Option<Line> {
     let Band { lower, upper, .. } = inputs::band(run, map, &Kind::Gamma)?;
     let x = depth + 0.15;
     let ends = vec![(x, lower.value), (x, upper.value)];
-    Some(Line::new(VERMILION, ends).wide(3.0))
+    Some(Line::new(INK, ends).wide(3.0))
 }
 
 /// The maps with the depth of their inclusion, mm.
@@ -94,7 +97,8 @@ fn words(run: &Run, found: &Findings, maps: &Maps<'_>, has_bars: bool) -> Words 
     let left = extremes(felt.map(|(_, map)| map.gamma_left.by_default.both / map.gamma.both));
     let left = left.map(|ends| {
         let [least, most] = ends.map(percent);
-        format!(": with offset, drift and gain unknown, the defaults of palpate detect --model exact, {least} to {most} of it is left")
+        let range = if least == most { most } else { format!("{least} to {most}") };
+        format!(": with offset, drift and gain unknown, the defaults of palpate detect --model exact, {range} of it is left")
     });
     let left = left.unwrap_or_default();
     let bars = " Upright bars hold γ with all but the noise known in 95 % of the draws of the uncertain inputs.";

@@ -72,9 +72,12 @@ fn panel(of: &QuantityResult, bars: &[(&str, f64)]) -> Panel {
     let lines: Vec<_> = bars.iter().enumerate().map(line).collect();
     let x = round_range(bars.iter().map(|bar| bar.1));
     let count = bars.len().max(1);
+    // Its change is in per cent.
+    let heading = of.quantity.to_string();
+    let heading = heading.strip_suffix(", N").unwrap_or(&heading);
     let (y, height) = ([0.0, count as f64], ROW * count as i32);
     Panel {
         kind: PanelKind::Ranked,
-        ..Panel::new(of.quantity.to_string(), [x, y], height, lines)
+        ..Panel::new(heading, [x, y], height, lines)
     }
 }

@@ -113,10 +113,20 @@ impl Page<'_> {
         } else if weights.iter().all(|of| of.left.upper < 1.0) {
             format!("are {worst}, over every sweep of {range}, and reject it")
         } else {
+            let rejecting = weights.iter().filter(|of| of.left.upper < 1.0).count();
+            let of = weights.len();
             format!(
-                "are {worst}, over every sweep of {range}, but do not reject it over all of them"
+                "are {worst}, over every sweep of {range}, but reject it in {rejecting} of {of} fits"
             )
         })
+    }
+
+    /// The phantoms whose gel passes through itself at some pose, where forces mean nothing.
+    fn inverted(&self) -> Vec<&str> {
+        let is_inverted = |of: &&Quality| of.certificate.smallest_det.det <= 0.0;
+        let all = self.certificates();
+        let inverted = all.filter(|(_, of)| of.as_ref().is_some_and(is_inverted));
+        inverted.map(|(name, _)| &**name).collect()
     }
 
     /// Whether the gel of the reference is a body of revolution.
@@ -221,8 +231,14 @@ fn serving(on: &TheoryFindings, of: &TheoryFindings) -> String {
             (_, []) => "at a depth that is unknown, for want of a signal".into(),
             (None, _) => "at every depth".into(),
             (_, at) if at.iter().all(|at| !at.serves) => "at no depth".into(),
-            (Some(0), _) => "at greater depths alone".into(),
-            (Some(next), at) => format!("to {} mm", text::millimetres(at[next - 1].depth_m)),
+            (Some(next), at) if at[next..].iter().all(|at| !at.serves) => {
+                format!("to {} mm", text::millimetres(at[next - 1].depth_m))
+            }
+            (_, at) => {
+                let served = at.iter().filter(|at| at.serves);
+                let served = served.map(|at| text::millimetres(at.depth_m));
+                format!("at {} mm alone", text::joined(served, " and "))
+            }
         };
         format!("{} {how_far}", template.name)
     });

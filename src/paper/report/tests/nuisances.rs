@@ -165,7 +165,7 @@ fn the_figure_shows_every_gamma() {
         let count = figure.svg.matches(&format!("\n{name}\n")).count();
         assert_eq!(count, 1, "{name}");
     }
-    assert!(figure.caption.contains("71.4 % to 71.4 % of it is left"));
+    assert!(figure.caption.contains(", 71.4 % of it is left"));
 }
 
 // Verifies: REP-035, REP-003.

@@ -108,11 +108,23 @@ fn bounds_agree_with_the_budget_and_the_times() {
 
 // Verifies: HID-064.
 #[test]
-fn percents_are_between_0_and_100() {
+fn percents_are_below_100_and_a_bound_is_likelier_right_than_wrong() {
     for wrong in [0.0, 100.0, -1.0, f64::NAN] {
-        assert!(Budget::new(MS, wrong, 95.0).is_err(), "{wrong}");
-        let refusal = Budget::new(MS, 99.9, wrong).unwrap_err().to_string();
+        let refusal = Budget::new(MS, wrong, 95.0).unwrap_err().to_string();
         let holds = refusal.ends_with("but must be above 0 and below 100");
         assert!(holds, "{refusal}");
     }
+    for wrong in [49.9, 0.95, 100.0, f64::NAN] {
+        let refusal = Budget::new(MS, 99.9, wrong).unwrap_err().to_string();
+        let holds = refusal.ends_with("but must be at least 50 and below 100");
+        assert!(holds, "{refusal}");
+    }
+}
+
+// Verifies: HID-062.
+#[test]
+fn a_budget_is_printed_as_it_was_given() {
+    let mut responses = Responses::new(Budget::of(Duration::from_micros(1001)));
+    responses.record(MS, None);
+    assert_eq!(responses.judged().unwrap().budget_us, 1001.0);
 }

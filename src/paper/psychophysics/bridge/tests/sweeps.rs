@@ -127,6 +127,7 @@ fn without_a_wrong_answer_no_weight_is_rejected() {
     assert_eq!(weights.len(), 16);
     for range in weights {
         assert_eq!((range.dispersion, range.left.upper), (1.0, 1.0));
+        assert_eq!(range.fits_worst, None);
     }
 }
 
