@@ -125,16 +125,17 @@ impl<R: Input> Reports<R> {
                 return Ok(Some(*report));
             }
             let left = timeout.map(|time| time.saturating_sub(began.elapsed()));
-            if !self.fill(left)? && left == Some(Duration::ZERO) {
+            if !self.fill(expected, left)? && left == Some(Duration::ZERO) {
                 return Ok(None);
             }
         }
     }
 
-    /// Reads what has come, and waits for it if nothing has; whether something came. Leaves out all positions but the newest.
+    /// Reads what has come, and waits for it if nothing has; whether something came. Leaves out all positions but the newest, if a position
+    /// is `expected`.
     ///
     /// Implements: HID-111, HID-112.
-    fn fill(&mut self, timeout: Option<Duration>) -> Result<bool, DeviceError> {
+    fn fill(&mut self, expected: u8, timeout: Option<Duration>) -> Result<bool, DeviceError> {
         self.bytes.copy_within(self.untaken.clone(), 0);
         self.untaken = 0..self.untaken.len();
         let read = self
@@ -148,7 +149,7 @@ impl<R: Input> Reports<R> {
             Some(0) => Err(gone("pipe: read: the input ended within a report")),
             Some(count) => {
                 self.untaken.end += count;
-                if self.bytes[0] == PositionReport::NUMBER {
+                if [expected, self.bytes[0]] == [PositionReport::NUMBER; 2] {
                     let whole = self.untaken.len() / PositionReport::LENGTH;
                     self.untaken.start = whole.saturating_sub(QUEUE) * PositionReport::LENGTH;
                 }

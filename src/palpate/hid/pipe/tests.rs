@@ -186,6 +186,8 @@ fn an_input_that_ends_or_is_none_of_a_bridge_stops_the_device() {
         input
     };
     let opened = |bytes| PipeDevice::open(input(bytes), Vec::new()).err();
+    // More positions than the loop takes, and then what must be first.
+    let late = [report.repeat(64), about.to_vec()].concat();
     for (bytes, message) in [
         (
             &about[..0],
@@ -193,6 +195,7 @@ fn an_input_that_ends_or_is_none_of_a_bridge_stops_the_device() {
         ),
         (&about[..16], "pipe: read: the input ended within a report"),
         (&report[..], "pipe: read: report number 1, which must be 3"),
+        (&late, "pipe: read: report number 1, which must be 3"),
         (
             b"hello, palpate, here is a device",
             "pipe: read: report number 104, which must be 3",
