@@ -145,12 +145,14 @@ fn the_force_is_released_and_the_device_stopped_when_positions_cease() {
 // Verifies: HID-112.
 #[test]
 fn a_device_that_is_silent_before_the_loop_is_armed_ends_the_session() {
-    // After three positions without the deadman, or with none at all; the loop arms at the earliest with the second.
+    // With no position at all, or with one: the loop arms with the second at the earliest.
     for positions in [0, 1] {
         let (cycles, end, written) = session(positions, 10_000);
         assert_eq!(end, End::Fault(Fault::Watchdog));
-        // A cycle waits 40 ms at the longest for a position.
-        assert!(cycles.len() >= 25, "{}", cycles.len());
+        // A cycle waits 40 ms for a position, and longer on a busy machine.
+        assert!((5..=30).contains(&cycles.len()), "{}", cycles.len());
+        let silent = cycles.last().unwrap().woke - cycles[0].received;
+        assert!(silent.as_secs_f64() > 0.9, "{silent:?}");
         assert!(cycles.iter().all(|cycle| cycle.force
             == ForceReport {
                 sequence: cycle.force.sequence,

@@ -200,7 +200,7 @@ fn pressed(map: &ForceTable, damping: &Damping, limits: &Limits, speed: f64, tim
 fn assert_refused(map: &ForceTable, damping: &Damping, limits: &Limits, what: &str) {
     let refusal = LoadedTable::passive(map, damping, limits).unwrap_err();
     let found = refusal.to_string();
-    let holds = found.contains(&format!(" {what}, and the device"));
+    let holds = found.contains(&format!(" {what}, where device and force limit allow"));
     assert!(holds, "{found}");
 }
 
