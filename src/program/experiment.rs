@@ -20,7 +20,7 @@ use super::playback::{DeviceArguments, limits, played_map};
 use super::progress::bar;
 use palpate::force_map::{ForceMap, Hypotheses};
 use palpate::hid::simulated::Trajectory;
-use palpate::hid::{HapticDevice, check};
+use palpate::hid::{HapticDevice, check_device};
 use palpate::journal::Journal;
 use palpate::servo::{Limits, LoadedTable};
 use palpate_paper::psychophysics::{
@@ -198,7 +198,7 @@ impl<'a> Pairs<'a> {
         // A weaker device plays what it can.
         let largest = f32::from(capabilities.largest_force_mn) / 1e3;
         let limits = limits(largest.min(LARGEST_FORCE), &capabilities)?;
-        check(&capabilities, &limits).map_err(CliError::refused("device"))?;
+        check_device(&capabilities, &limits).map_err(CliError::refused("device"))?;
         let damping = arguments.device.damping(&capabilities);
         let sample = |path: &Path| {
             let map = played_map(path)?;

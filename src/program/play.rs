@@ -18,7 +18,7 @@ use palpate::file::check_writable;
 use palpate::hid::simulated::Trajectory;
 use palpate::hid::supervise::{HELD_UP, PlayOptions, play as supervised};
 use palpate::hid::timing::Timing;
-use palpate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session, check};
+use palpate::hid::{Capabilities, Counters, End, HapticDevice, Recording, Session, check_device};
 use palpate::servo::{Limits, LoadedTable};
 
 /// Most cycles that are recorded: as many as can be read again.
@@ -106,7 +106,7 @@ fn session(
 ) -> Result<(), CliError> {
     let capabilities = device.capabilities().map_err(failed)?;
     let limits = limits(arguments.max_force, &capabilities)?;
-    check(&capabilities, &limits).map_err(failed)?;
+    check_device(&capabilities, &limits).map_err(failed)?;
     let (loaded, scale) = table(arguments, &capabilities, &limits)?;
     let options = PlayOptions {
         duration,

@@ -147,15 +147,7 @@ impl ReachArguments {
 /// Implements: CLI-160, CLI-163, CLI-234.
 pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     let bank = Bank::read(&arguments.bank)?;
-    let sweep = match arguments.path.path()? {
-        Some(path) => path.sweep()?,
-        None if bank.probe_depths().len() > 1 => {
-            refuse!(
-                "the bank has several depths of the probe; give the sweep, by --depths-mm or --path"
-            )
-        }
-        None => bank.sweep(arguments.samples.map(|samples| samples as usize))?,
-    };
+    let sweep = sweep(arguments, &bank)?;
     let asked = arguments.asked(&bank, &sweep)?;
     let plain = Reach {
         bank: &bank,
@@ -198,6 +190,19 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
     let table = answer.render().unwrap_or_default();
     let answer = Envelope::new("palpate-reach", 1, answer);
     arguments.format.print(&answer, || table)
+}
+
+/// The sweep along the path that was given, or over the bank.
+fn sweep(arguments: &ReachArguments, bank: &Bank) -> Result<Record, CliError> {
+    Ok(match arguments.path.path()? {
+        Some(path) => path.sweep()?,
+        None if bank.probe_depths().len() > 1 => {
+            refuse!(
+                "the bank has several depths of the probe; give the sweep, by --depths-mm or --path"
+            )
+        }
+        None => bank.sweep(arguments.samples.map(|samples| samples as usize))?,
+    })
 }
 
 /// Implements: CLI-161.

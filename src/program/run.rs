@@ -61,14 +61,9 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let measured = config.measured.iter();
     let measured = measured.map(|path| measured_map(&config.file(path), &config.columns));
     let measured = measured.collect::<Result<_, _>>()?;
-    let study = arguments.study.as_deref().map(StudyResults::read);
+    let study = arguments.study.as_deref();
+    let study = study.map(|path| study_of(path, &config, &phantoms));
     let study = study.transpose()?;
-    if let (Some(study), Some(path)) = (&study, &arguments.study) {
-        let poses = (probe_depth(&config.depths).0, &config.laterals[..]);
-        let phantoms: Vec<_> = phantoms.iter().collect();
-        let checked = check_study(study, &phantoms, poses, &config.detection);
-        checked.map_err(CliError::refused(path.display()))?;
-    }
     let theories = match arguments.compare_theories {
         true => theories::phantoms(&config, &phantoms)?,
         false => Vec::new(),
@@ -103,6 +98,16 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
         .collect();
     write_run(&run, &arguments.out)?;
     strains.into_iter().collect()
+}
+
+/// Reads the results of a study that fits the run.
+fn study_of(path: &Path, config: &Config, phantoms: &[Phantom]) -> Result<StudyResults, CliError> {
+    let study = StudyResults::read(path)?;
+    let poses = (probe_depth(&config.depths).0, &config.laterals[..]);
+    let phantoms: Vec<_> = phantoms.iter().collect();
+    let checked = check_study(&study, &phantoms, poses, &config.detection);
+    checked.map_err(CliError::refused(path.display()))?;
+    Ok(study)
 }
 
 /// Reads a measured map, in CSV in this layout.

@@ -26,4 +26,4 @@ pub mod timing;
 pub use device::{DeviceError, DeviceState, HapticDevice, Received};
 pub use palpate_core::hid::*;
 pub use recording::{RecordedCycle, Recording};
-pub use session::{Counters, Cycle, End, Session, check};
+pub use session::{Counters, Cycle, End, Session, check_device};

@@ -137,14 +137,14 @@ fn as_it_is(error: impl fmt::Display) -> Refusal {
     Refusal::state(error, "")
 }
 
-/// Refuses a device that could leave a force on the hand, or that does not make these limits.
+/// The units of a device; refuses one that could leave a force on the hand, or that does not make these limits.
 ///
 /// # Errors
 /// What is wrong with the device, or with the limits on it.
 ///
 /// Implements: HID-017.
-pub fn check(capabilities: &Capabilities, limits: &Limits) -> Result<(), Refusal> {
-    Units::new(capabilities).map_err(as_it_is)?;
+pub fn check_device(capabilities: &Capabilities, limits: &Limits) -> Result<Units, Refusal> {
+    let units = Units::new(capabilities).map_err(as_it_is)?;
     let (watchdog_ms, period_us) = (capabilities.watchdog_ms, capabilities.period_us);
     Refusal::state("the device reports every 0 µs, not every 1 µs or more", "")
         .when(period_us == 0)?;
@@ -163,7 +163,8 @@ pub fn check(capabilities: &Capabilities, limits: &Limits) -> Result<(), Refusal
     let largest = f32::from(capabilities.largest_force_mn) / 1e3;
     let found = format!("a force limit of {} N", limits.force());
     let remedy = format!("give at most {largest} N, the device's largest force");
-    Refusal::state(found, remedy).when(limits.force() > largest)
+    Refusal::state(found, remedy).when(limits.force() > largest)?;
+    Ok(units)
 }
 
 impl<'a, D: HapticDevice> Session<'a, D> {
@@ -179,8 +180,7 @@ impl<'a, D: HapticDevice> Session<'a, D> {
         limits: Limits,
     ) -> Result<Session<'a, D>, Refusal> {
         let capabilities = device.capabilities().map_err(as_it_is)?;
-        let units = Units::new(&capabilities).map_err(as_it_is)?;
-        check(&capabilities, &limits)?;
+        let units = check_device(&capabilities, &limits)?;
         Ok(Session {
             device,
             capabilities,

@@ -111,22 +111,12 @@ impl<'a> RobustDetector<'a> {
 
     /// Judges the forces of one record for each sweep.
     ///
-    /// Implements: ROB-003, ROB-004, ROB-005, ROB-008, ROB-031, ROB-060.
+    /// Implements: ROB-003, ROB-004, ROB-031, ROB-060.
     ///
     /// # Errors
     /// A record with lateral forces where the sweep has none, or the other way round; a force beyond 10²⁰ N, or that is not finite.
     pub fn judge(&self, records: &[Force<&[f64]>]) -> Result<RobustAnswer, Refusal> {
-        for (sweep, record) in self.sweeps.iter().zip(records) {
-            let other = Refusal::state("the record has other channels than the sweep", "");
-            other.when(sweep.has_lateral == record.lateral.is_empty())?;
-            let mut forces = record.lateral.iter().chain(record.normal);
-            // NaN is in no range.
-            let wrong = forces.find(|force| !(-LARGEST..=LARGEST).contains(*force));
-            if let Some(force) = wrong {
-                let right = "at most 1e20 N in magnitude";
-                return Err(Refusal::value("force", format!("{force:?}"), right));
-            }
-        }
+        self.check(records)?;
         let mut answer = RobustAnswer {
             posterior: self.question.prior_h1,
             ..RobustAnswer::default()
@@ -175,6 +165,24 @@ impl<'a> RobustDetector<'a> {
             answer.causes.insert(0, Cause::Exchanged);
         }
         Ok(answer)
+    }
+
+    /// Refuses other channels than those of the sweeps, and forces that are too large.
+    ///
+    /// Implements: ROB-005, ROB-008.
+    fn check(&self, records: &[Force<&[f64]>]) -> Result<(), Refusal> {
+        for (sweep, record) in self.sweeps.iter().zip(records) {
+            let other = Refusal::state("the record has other channels than the sweep", "");
+            other.when(sweep.has_lateral == record.lateral.is_empty())?;
+            let mut forces = record.lateral.iter().chain(record.normal);
+            // NaN is in no range.
+            let wrong = forces.find(|force| !(-LARGEST..=LARGEST).contains(*force));
+            if let Some(force) = wrong {
+                let right = "at most 1e20 N in magnitude";
+                return Err(Refusal::value("force", format!("{force:?}"), right));
+            }
+        }
+        Ok(())
     }
 
     /// The records without glitches, of which `answer` gets level, noise and glitches, or the causes why they cannot be judged.

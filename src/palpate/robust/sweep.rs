@@ -308,9 +308,7 @@ impl PreparedSweep {
         let (lateral, normal) = (lateral?, normal?);
         let glitches = lateral.1 + normal.1;
         let forces = Force::new(lateral.0, normal.0);
-        let left = forces.as_ref().map(|channel| modes.residual(channel));
-        let squares = left.map(|left| left.iter().map(|force| force * force).sum::<f64>());
-        if self.has_lateral && squares.lateral < QUIET * QUIET * squares.normal {
+        if self.has_lateral && self.is_quiet(&forces) {
             return Err(Cause::Channels);
         }
         let even = |power: f64| Spectrum::even(modes, power, power / question.correlation_length);
@@ -326,6 +324,15 @@ impl PreparedSweep {
             noise,
             glitches,
         })
+    }
+
+    /// Whether what the modes leave of the lateral forces is next to nothing beside what they leave of the normal ones.
+    ///
+    /// Implements: ROB-009.
+    fn is_quiet(&self, forces: &Force<Vec<f64>>) -> bool {
+        let left = forces.as_ref().map(|channel| self.modes.residual(channel));
+        let squares = left.map(|left| left.iter().map(|force| force * force).sum::<f64>());
+        squares.lateral < QUIET * QUIET * squares.normal
     }
 
     /// What uneven depths add to the forces of a record of some level, N: nothing if there are none.
