@@ -183,18 +183,15 @@ fn statistic(
         .zip(noise)
         .map(|((cross, energy), noise)| {
             let energy = energy.value();
+            let weight = libm::sqrt(energy * samples as f64);
             // The matched filter of a template of zeros is not defined, and its weight in θ is zero.
             if energy == 0.0 {
                 0.0
+            } else if weight == f64::INFINITY {
+                // Refused: the quotient would be 0.
+                f64::NAN
             } else {
-                let weight = libm::sqrt(energy * samples as f64);
-                // Where that overflows the quotient would be 0.
-                let cross = if weight.is_finite() {
-                    cross.value()
-                } else {
-                    f64::NAN
-                };
-                cross / weight / noise.factor
+                cross.value() / weight / noise.factor
             }
         });
     representable("y_x", y.lateral)?;

@@ -54,7 +54,10 @@ use crate::stats::error::check_samples;
 
 impl Force<&[f64]> {
     /// Checks that both components have `length` samples, all of them finite; `x` and `y` are their names.
-    fn check(self, x: &'static str, y: &'static str, length: usize) -> Result<(), DetectError> {
+    ///
+    /// # Errors
+    /// No samples; another number of them; NaN or infinity.
+    pub fn check(self, x: &'static str, y: &'static str, length: usize) -> Result<(), DetectError> {
         check_samples(x, self.lateral, length)?;
         check_samples(y, self.normal, length)
     }

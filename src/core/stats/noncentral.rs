@@ -64,14 +64,7 @@ pub fn chi_square(x: f64, degrees: f64, noncentrality: f64) -> Result<Tails, Num
     check_degrees("degrees", degrees)?;
     check_squares(noncentrality)?;
     let law = Central::Gamma { y: 0.5 * x };
-    let [shape, h, offset] = [0.5 * degrees, 0.5 * noncentrality, 0.0];
-    Ok(Mixture {
-        law,
-        shape,
-        h,
-        offset,
-    }
-    .tails())
+    Ok(Mixture::of(law, 0.5 * degrees, 0.5 * noncentrality).tails())
 }
 
 /// The tails of (X/`numerator`)/(Y/`denominator`) for X as in [`chi_square`] and an independent central Y; the two are their
@@ -92,14 +85,7 @@ pub fn f_ratio(
     check_degrees("denominator", denominator)?;
     check_squares(noncentrality)?;
     let law = Central::beta(0.5 * numerator * x, 0.5 * denominator);
-    let [shape, h, offset] = [0.5 * numerator, 0.5 * noncentrality, 0.0];
-    Ok(Mixture {
-        law,
-        shape,
-        h,
-        offset,
-    }
-    .tails())
+    Ok(Mixture::of(law, 0.5 * numerator, 0.5 * noncentrality).tails())
 }
 
 /// The tails of (Z + `noncentrality`)/√(Y/`degrees`) for a standard normal Z and an independent central Y as in
@@ -170,13 +156,12 @@ fn student_above(x: f64, c: f64, delta: f64) -> Tails {
     if delta < 0.0 {
         return Tails::of_upper(opposite_tail(x, c, -delta));
     }
-    let (law, h) = (Central::beta(0.5 * x * x, c), 0.5 * delta * delta);
-    let [whole, between] = [(0.5, 0.0), (1.0, 0.5)].map(|(shape, offset)| Mixture {
-        law,
-        shape,
-        h,
-        offset,
-    });
+    let whole = Mixture::of(Central::beta(0.5 * x * x, c), 0.5, 0.5 * delta * delta);
+    let between = Mixture {
+        shape: 1.0,
+        offset: 0.5,
+        ..whole
+    };
     if whole.is_beyond_mean() {
         Tails::of_upper(0.5 * (whole.upper() + between.upper()))
     } else {
@@ -301,6 +286,17 @@ struct Mixture {
 }
 
 impl Mixture {
+    /// With whole weights.
+    fn of(law: Central, shape: f64, h: f64) -> Mixture {
+        let offset = 0.0;
+        Mixture {
+            law,
+            shape,
+            h,
+            offset,
+        }
+    }
+
     fn tails(&self) -> Tails {
         if self.is_beyond_mean() {
             Tails::of_upper(self.upper())

@@ -25,11 +25,7 @@ pub fn reach_figure(
     let room = (0.05 * (ends[1] - ends[0])).max(0.5);
     let x = [ends[0] - room, ends[1] + room];
     let deepest = 1e3 * depths.last().copied().unwrap_or_default();
-    // Smaller dots in dashes, which show where there is but one diameter.
-    let sample = |is_dashed| {
-        let radius = if is_dashed { 2 } else { 4 };
-        Line::new(INK, Vec::new()).dotted(radius).dashed(is_dashed)
-    };
+    let sample = |is_dashed| dotted(Line::new(INK, Vec::new()), is_dashed);
     let lines = lines(bank, [plain, beside], x, deepest);
     let is_found = plain.iter().chain(beside).any(|of| of.depth.is_some());
     let none = "No inclusion of the bank is found, not even at the least depth.";
@@ -69,11 +65,17 @@ fn lines(bank: &Bank, reached: [&[Reached]; 2], x: [f64; 2], deepest: f64) -> Ve
                 2.. if !is_dashed => format!("{} kPa", trimmed(1e-3 * modulus, 3)),
                 _ => String::new(),
             };
-            let line = Line::new(colour, points.collect()).dotted(if is_dashed { 2 } else { 4 });
-            lines.push(line.dashed(is_dashed).named(name));
+            let line = dotted(Line::new(colour, points.collect()), is_dashed);
+            lines.push(line.named(name));
         }
     }
     lines
+}
+
+/// A line with dots: in dashes with smaller ones, which tell it apart where there is but one diameter.
+fn dotted(line: Line, is_dashed: bool) -> Line {
+    let radius = if is_dashed { 2 } else { 4 };
+    line.dotted(radius).dashed(is_dashed)
 }
 
 /// The figure in words.

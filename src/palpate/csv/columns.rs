@@ -261,21 +261,20 @@ impl Found {
         let of_quantity = |names: &&&[Named]| names.contains(&(self.name, self.power));
         let names = column.iter().find(of_quantity)?;
         let (name, power) = in_unit(names, unit)?;
-        Some(match (self.unit, self.by) {
-            (UnitBy::User, _) => self,
-            (UnitBy::Name, _) if power != self.power => Found {
+        let by = match self.by {
+            By::Unitless => By::Synonym,
+            by => by,
+        };
+        Some(match self.unit {
+            UnitBy::User => self,
+            UnitBy::Name if power != self.power => Found {
                 unit: UnitBy::Two,
-                ..self
-            },
-            (_, By::Unitless) => Found {
-                name,
-                power,
-                by: By::Synonym,
                 ..self
             },
             _ => Found {
                 name,
                 power,
+                by,
                 ..self
             },
         })

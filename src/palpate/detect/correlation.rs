@@ -8,20 +8,21 @@ use crate::stats::tails::chi_square_tail;
 /// The sum over the autocorrelation ends at this multiple of what it has come to.
 const WINDOW: f64 = 5.0;
 
-/// Σ xᵢ xᵢ₊ₖ / Σ xᵢ² of any lag k, 0 of a series of zeros.
-fn autocorrelation(series: &[f64]) -> impl Fn(usize) -> f64 {
+/// Σ xᵢ², and Σ xᵢ xᵢ₊ₖ / Σ xᵢ² of any lag k, 0 of a series of zeros.
+fn autocorrelation(series: &[f64]) -> (f64, impl Fn(usize) -> f64) {
     let product = |lag: usize| {
         let later = series.get(lag..).unwrap_or_default();
         compensated::dot(series, later, 1.0).value()
     };
     let power = product(0);
-    move |lag| {
+    let of = move |lag| {
         if power > 0.0 {
             product(lag) / power
         } else {
             0.0
         }
-    }
+    };
+    (power, of)
 }
 
 /// The probability that `lags` autocorrelations of white noise are as large as those of the series, or larger, by the statistic of
@@ -33,11 +34,10 @@ fn autocorrelation(series: &[f64]) -> impl Fn(usize) -> f64 {
 /// Implements: NUI-020.
 pub fn ljung_box(series: &[f64], lags: usize) -> Result<f64, DetectError> {
     check_samples("series", series, series.len())?;
-    let power = compensated::dot(series, series, 1.0).value();
+    let (power, of) = autocorrelation(series);
     representable("power", power)?;
     let samples = series.len() as f64;
     check_length("lags", lags.clamp(1, series.len().max(2) - 1), lags)?;
-    let of = autocorrelation(series);
     let terms = (1..=lags).map(|lag| {
         let correlation = of(lag);
         correlation * correlation / (samples - lag as f64)
@@ -50,7 +50,7 @@ pub fn ljung_box(series: &[f64], lags: usize) -> Result<f64, DetectError> {
 ///
 /// Implements: NUI-021.
 pub fn correlation_length(series: &[f64]) -> f64 {
-    let (of, mut length) = (autocorrelation(series), 1.0);
+    let ((_, of), mut length) = (autocorrelation(series), 1.0);
     for lag in 1..series.len() {
         length += 2.0 * of(lag);
         if lag as f64 >= WINDOW * length {

@@ -1,7 +1,7 @@
 //! Simulated records. Every trial is a function of the generator and its number alone.
 
 use super::{DetectError, Force, MatchedFilter, Statistic};
-use crate::stats::error::{check_length, check_samples};
+use crate::stats::error::check_length;
 use crate::stats::random::Generator;
 
 /// Records F_p = F + noise, and what the matched filter for F_0 against F_1 says about them.
@@ -25,8 +25,7 @@ impl<'a> Simulation<'a> {
         generator: Generator,
     ) -> Result<Self, DetectError> {
         let filter = MatchedFilter::new(template, noise_sd)?;
-        check_samples("f0_x", f0.lateral, filter.samples())?;
-        check_samples("f0_y", f0.normal, filter.samples())?;
+        f0.check("f0_x", "f0_y", filter.samples())?;
         Ok(Self {
             filter,
             f0,

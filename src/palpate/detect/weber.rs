@@ -3,7 +3,7 @@
 
 use super::{DetectError, Force};
 use crate::stats::compensated::{self, DoubleDouble};
-use crate::stats::error::{check_not_negative, check_positive, check_samples, representable};
+use crate::stats::error::{check_not_negative, check_positive, representable};
 
 /// The variance of one sample is floor² + (fraction · F)², where F is the force that the hypothesis
 /// expects.
@@ -38,15 +38,9 @@ pub fn theta_weber(
     noise: Force<WeberNoise>,
 ) -> Result<f64, DetectError> {
     let samples = f0.lateral.len();
-    let names = [
-        ("observed_x", "observed_y"),
-        ("f0_x", "f0_y"),
-        ("f1_x", "f1_y"),
-    ];
-    for ((x, y), forces) in names.into_iter().zip([observed, f0, f1]) {
-        check_samples(x, forces.lateral, samples)?;
-        check_samples(y, forces.normal, samples)?;
-    }
+    observed.check("observed_x", "observed_y", samples)?;
+    f0.check("f0_x", "f0_y", samples)?;
+    f1.check("f1_x", "f1_y", samples)?;
     for noise in noise.into_array() {
         check_positive("floor", noise.floor)?;
         check_not_negative("fraction", noise.fraction)?;

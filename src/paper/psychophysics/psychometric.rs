@@ -18,7 +18,7 @@ const SPREADS: [f64; 2] = [0.01, 10.0];
 /// Cells of the search for the spread, a factor of 1.3 wide.
 const SPREAD_CELLS: u32 = 24;
 /// Cells of the search for the midpoint between two depths, where a steep fall is.
-const MIDPOINT_CELLS: u32 = 4;
+const MIDPOINT_CELLS: u32 = 8;
 
 /// The psychometric function ½ + (½ − λ) Φ((m − d)/s) of the depth d that fits a condition best.
 #[derive(Debug, Clone, PartialEq, Serialize)]
