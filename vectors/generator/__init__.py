@@ -1,6 +1,6 @@
 """Makes the cases of vectors/*.json: one module a topic, expected values in 50 digits or exact fractions.
 
-Implements: VEC-008.
+Implements: VEC-008, VEC-019.
 """
 
 from multiprocessing import Pool

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from mpmath import exp, expm1, fdot, fsum, log, lu_solve, matrix, mpf, workdps
 
 from .numbers import Draws, real
-from .nuisances import U, Space, Statistic, errors, length, reals, record, shapes
-from .series import signal
-from .suite import Group, absolute, case_by_case, is_exact, refuse_common, relative, without
+from .nuisances import CUTS, U, Space, Statistic, errors, length, reals, record, shapes, sweep
+from .series import added, noise, signal, whole
+from .suite import Group, absolute, case_by_case, cut_answers, is_exact, refuse_common, relative, without
 
 SOURCE = "least squares by normal equations, mpmath 1.3.0 at 250 digits"
 DIGITS = 250
@@ -183,7 +183,8 @@ def wrong_answers(args, pairs, right, ok):
     return wrong
 
 
-def add(group, comment, residual, templates, nuisances, prior, level="known", prior_h1=0.5):
+def add(group, comment, residual, templates, nuisances, prior, level="known", prior_h1=0.5, cuts=None):
+    """With `cuts`, the wrong answers are those of the cut record alone."""
     args = {
         "residual": residual, "templates": templates, "nuisances": nuisances, "level": level, "prior": prior,
         "prior_h1": prior_h1,
@@ -192,7 +193,9 @@ def add(group, comment, residual, templates, nuisances, prior, level="known", pr
     right = hypotheses(args, space)
     bounds, pairs = check(args, space, right.found)
     ok = right.answer()
-    group.accept(comment, args, ok, wrong_answers(args, pairs, right, ok), tolerance=tolerances(bounds, right, ok))
+    of_first = lambda first: hypotheses(first, Space(first["nuisances"], len(first["residual"]))).answer()
+    wrong = wrong_answers(args, pairs, right, ok) if cuts is None else cut_answers(args, cuts, of_first)
+    group.accept(comment, args, ok, wrong, tolerance=tolerances(bounds, right, ok))
 
 
 def drawn_prior(draws, count, zeros=0):
@@ -219,7 +222,17 @@ def bank_posterior():
         drawn(group)
         special(group)
     refuse(group)
+    with workdps(DIGITS):
+        large(group)
     return group
+
+
+def large(group):
+    draws = Draws(106)
+    add(group, "a sweep's record, unknown level", *sweep(draws, 3), [0.2, 0.3, 0.5], "unknown", 0.25, CUTS)
+    templates, nuisances = [whole(42, draws, 1) for _ in range(50)], [[1] * 42]
+    residual = [round(v, 5) for v in added(noise(42, draws, 1), templates[40], [5] * 42)]
+    add(group, "fifty hypotheses", residual, templates, nuisances, [0.02] * 50, "known", 0.25, ())
 
 
 def by_hand(group):

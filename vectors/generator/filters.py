@@ -8,10 +8,12 @@ from fractions import Fraction
 from mpmath import mpf, sqrt
 
 from .numbers import UNIT, Draws, exact, real
-from .series import dot, exacts, magnitude, noise, signal
+from .series import added, dot, exacts, magnitude, noise, signal, whole
 from .suite import Group, absolute, case_by_case, in_ulp, refuse_common
 
 SOURCE = "exact fractions; square roots by mpmath 1.3.0 at 50 digits"
+SWEEP = 401
+"""Samples of each channel of a usual record (VEC-019)."""
 
 
 def root(ratio):
@@ -74,30 +76,42 @@ def matched_filter():
     sigma = {"sigma_x": in_ulp(4, "√N and a quotient, or the root of the weight"), "sigma_y": in_ulp(4, "as sigma_x")}
     sums = {key: in_ulp(16, SUM) for key in ("b_x", "b_y", "gamma")}
     group = Group("matched_filter", SOURCE, {key: {**sums, **sigma}[key] for key in ("b_x", "b_y", *sigma, "gamma")})
-    for x, y, sx, sy, kind in templates(Draws(20)):
-        (bx, nx, gx), (by, ny, gy) = filtered(x, sx), filtered(y, sy)
-        count = len(x)
-        ok = {"b_x": bx, "b_y": by, "sigma_x": nx, "sigma_y": ny, "gamma": root(gx + gy)}
-        n, ratio = mpf(count), exact(sx) ** 2 / exact(sy) ** 2
-        wrong = [
-            ("weight_missing", {"b_x": bx * sqrt(n), "b_y": by * sqrt(n), "sigma_x": mpf(sx), "sigma_y": mpf(sy)}),
-            ("weight_missing", {"gamma": root((gx + gy) / count)}),
-            ("weight_missing", {"sigma_x": mpf(sx), "sigma_y": mpf(sy), "gamma": root((gx + gy) / count)}),
-            ("gamma_squared", {"gamma": real(gx + gy)}),
-            ("variance_for_sd", {"sigma_x": nx * nx, "sigma_y": ny * ny}),
-            ("variance_for_sd", {"gamma": root(gx * exact(sx) + gy * exact(sy))}),
-            ("channels_exchanged", {"gamma": root(gx * ratio + gy / ratio)}),
-            ("channel_missing", {"gamma": root(gy)}),
-        ]
-        if abs(x[0]) > 1e150 or 0 < abs(x[0]) < 1e-150:
-            wrong.append(("squares_underflow", {"b_x": mpf(0), "b_y": mpf(0), "gamma": mpf(0)}))
-        limits = None
-        if sum_ulps(count) > 16:
-            limits = {key: in_ulp(sum_ulps(count), SUM) for key in ("b_x", "b_y", "gamma")}
-        args = {"template_x": x, "template_y": y, "noise_sd_x": sx, "noise_sd_y": sy}
-        group.accept(kind, args, ok, wrong, tolerance=limits)
+    for case in templates(Draws(20)):
+        filter_case(group, *case)
     refuse_filters(group)
+    draws = Draws(101)
+    x, y = whole(SWEEP, draws, 9), whole(SWEEP, draws, 9)
+    filter_case(group, x, y, 30, 40, "a sweep's record", (128, 256))
     return group
+
+
+def filter_answer(x, y, sx, sy):
+    (bx, nx, gx), (by, ny, gy) = filtered(x, sx), filtered(y, sy)
+    return {"b_x": bx, "b_y": by, "sigma_x": nx, "sigma_y": ny, "gamma": root(gx + gy)}
+
+
+def filter_case(group, x, y, sx, sy, kind, cuts=()):
+    (bx, nx, gx), (by, ny, gy) = filtered(x, sx), filtered(y, sy)
+    count = len(x)
+    n, ratio = mpf(count), exact(sx) ** 2 / exact(sy) ** 2
+    wrong = [
+        ("weight_missing", {"b_x": bx * sqrt(n), "b_y": by * sqrt(n), "sigma_x": mpf(sx), "sigma_y": mpf(sy)}),
+        ("weight_missing", {"gamma": root((gx + gy) / count)}),
+        ("weight_missing", {"sigma_x": mpf(sx), "sigma_y": mpf(sy), "gamma": root((gx + gy) / count)}),
+        ("gamma_squared", {"gamma": real(gx + gy)}),
+        ("variance_for_sd", {"sigma_x": nx * nx, "sigma_y": ny * ny}),
+        ("variance_for_sd", {"gamma": root(gx * exact(sx) + gy * exact(sy))}),
+        ("channels_exchanged", {"gamma": root(gx * ratio + gy / ratio)}),
+        ("channel_missing", {"gamma": root(gy)}),
+    ]
+    if abs(x[0]) > 1e150 or 0 < abs(x[0]) < 1e-150:
+        wrong.append(("squares_underflow", {"b_x": mpf(0), "b_y": mpf(0), "gamma": mpf(0)}))
+    wrong += [("record_cut", filter_answer(x[:size], y[:size], sx, sy)) for size in cuts]
+    limits = None
+    if sum_ulps(count) > 16:
+        limits = {key: in_ulp(sum_ulps(count), SUM) for key in ("b_x", "b_y", "gamma")}
+    args = {"template_x": x, "template_y": y, "noise_sd_x": sx, "noise_sd_y": sy}
+    group.accept(kind, args, filter_answer(x, y, sx, sy), wrong, tolerance=limits)
 
 
 def refuse_filters(group):
@@ -169,6 +183,10 @@ def theta():
         series = [[v * scale for v in f] for f in (px, py, f0x, f0y, f1x, f1y)]
         theta_case(group, kind, series, sx * scale, sy * scale)
     refuse_records(group)
+    draws = Draws(102)
+    f0 = whole(SWEEP, draws, 9), whole(SWEEP, draws, 9)
+    f1 = [added(f, whole(SWEEP, draws, 2)) for f in f0]
+    theta_case(group, "a sweep's record", [*(added(f, whole(SWEEP, draws, 9)) for f in f1), *f0, *f1], 6, 8, (128, 256))
     return group
 
 
@@ -207,7 +225,7 @@ def total(channels):
     return sum((rd - half for rd, half, _ in (correlate(*channel) for channel in channels)), Fraction(0))
 
 
-def theta_case(group, kind, series, sx, sy):
+def theta_case(group, kind, series, sx, sy, cuts=()):
     px, py, f0x, f0y, f1x, f1y = (exacts(f) for f in series)
     count, channels = len(px), []
     for p, f0, f1, s in ((px, f0x, f1x, sx), (py, f0y, f1y, sy)):
@@ -245,6 +263,10 @@ def theta_case(group, kind, series, sx, sy):
         ("f0_not_subtracted", {"theta": total(raw), **outputs(raw)}),
         ("channels_exchanged", {"theta": exchanged, "gamma": root(exchanged2)}),
     ]
+    for size in cuts:
+        first = [(r[:size], d[:size], s) for r, d, s in channels]
+        energy = sum(half for _, half, _ in (correlate(*channel) for channel in first))
+        wrong.append(("record_cut", {"theta": total(first), **outputs(first), "gamma": root(2 * energy)}))
     limits = {
         "theta": absolute(bound, "1", "(N + 8) 2⁻⁵³ Σ (|rΔ| + Δ²/2)/s²: plain sums of rounded differences"),
         "y_x": absolute(y_bounds[0], "N", "(3N/2 + 10) 2⁻⁵³ w Σ|rΔ|/b"),

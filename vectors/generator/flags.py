@@ -17,6 +17,7 @@ BUGS = {
     ),
     "lengths_differ": ("series of unequal lengths are cut, padded or repeated", ""),
     "empty": ("an empty series has an answer", ""),
+    "record_cut": ("a long record is cut", "a buffer of fixed size: a sweep has 401 samples of each channel"),
     "no_request": (
         "a line that is no request is answered, or ends the program",
         "every line has one answer; one that is no JSON has the id null",

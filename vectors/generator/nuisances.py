@@ -4,11 +4,12 @@ from dataclasses import dataclass, replace
 
 from mpmath import exp, fdot, isinf, log, matrix, mpf, sqrt
 
+from .filters import SWEEP
 from .normal import cdf
 from .numbers import UNIT, Draws, real
 from .quadratic import limits, student
-from .series import bump, noise, signal
-from .suite import Group, absolute, case_by_case, is_exact, refuse_common, without
+from .series import added, bump, noise, signal, whole
+from .suite import Group, absolute, case_by_case, cut_answers, is_exact, refuse_common, without
 
 SOURCE = "Gram–Schmidt, mpmath 1.3.0 at 50 digits; tails of t as in student_tail"
 U = real(UNIT)
@@ -205,7 +206,7 @@ def tolerances(args, space, found):
     return {key: absolute(bound, "1", REASONS[key]) for key, bound in bounds.items()}
 
 
-def add(group, comment, residual, template, nuisances, level="known", bias=0, eta=0):
+def add(group, comment, residual, template, nuisances, level="known", bias=0, eta=0, cuts=()):
     args = {
         "residual": residual, "template": template, "nuisances": nuisances, "level": level, "bias": bias, "eta": eta
     }
@@ -233,7 +234,22 @@ def add(group, comment, residual, template, nuisances, level="known", bias=0, et
             ("normal_for_student", replace(test, nu=None).answer(eta)),
             ("noncentral_for_central", test.noncentral_rates(eta)),
         ]
+    of_first = lambda first: Statistic.of(first, Space(first["nuisances"], len(first["residual"]))).answer(first)
+    wrong += cut_answers(args, cuts, of_first)
     group.accept(comment, args, ok, wrong, tolerance=tolerances(args, space, found))
+
+
+def sweep(draws, number):
+    """Templates and nuisances of a usual record (VEC-019), an offset of each channel and a gain, and a record with the last
+    template, in noise of some 5."""
+    count = 2 * SWEEP
+    none, one = [0] * SWEEP, [1] * SWEEP
+    nuisances = [one + none, none + one, whole(count, draws, 9)]
+    templates = [whole(count, draws, 1) for _ in range(number)]
+    return added(whole(count, draws, 9), nuisances[2], templates[-1]), templates, nuisances
+
+
+CUTS = (128, 256, 401, 512)
 
 
 def shapes(count, draws):
@@ -265,6 +281,8 @@ def theta_nuisances():
     of_several(group, draws)
     drawn(group, draws)
     refuse(group)
+    residual, [template], nuisances = sweep(Draws(105), 1)
+    add(group, "a sweep's record, unknown level", residual, template, nuisances, "unknown", 1, 0.5, CUTS)
     return group
 
 

@@ -11,7 +11,8 @@ from mpmath import exp, fsum, log, mpf, pi, sqrt
 from .coloured import cholesky
 from .nuisances import U, reals
 from .numbers import Draws, real
-from .suite import Group, absolute, case_by_case, refuse_common
+from .series import added, whole
+from .suite import Group, absolute, case_by_case, cut_answers, refuse_common
 
 SOURCE = "Cholesky factors of the whole covariances, mpmath 1.3.0 at 50 digits"
 AMPLITUDE, SHAPE = mpf(2) / 5, mpf(3) / 20
@@ -193,11 +194,14 @@ def wrong_answers(args, right, ok):
     return wrong
 
 
-def add(group, comment, args):
+def add(group, comment, args, cuts=None):
+    """With `cuts`, the wrong answers are those of the cut record alone."""
     right = Problem.of(args)
     ok = right.answer()
     assert lead(args) > 1e-6, f"{comment}: which law is nearest must not depend on rounding"
-    group.accept(comment, args, ok, wrong_answers(args, right, ok), tolerance=tolerances(right, ok))
+    of_first = lambda first: Problem.of(first).answer()
+    wrong = wrong_answers(args, right, ok) if cuts is None else cut_answers(args, cuts, of_first)
+    group.accept(comment, args, ok, wrong, tolerance=tolerances(right, ok))
 
 
 def covariances(draws, modes, number, size=1.0):
@@ -245,7 +249,23 @@ def robust_evidence():
     drawn(group)
     special(group)
     refuse(group)
+    large(group)
     return group
+
+
+def large(group):
+    draws = Draws(108)
+    neighbours = lambda most: [[max(0, most - 2 * abs(i - j)) for j in range(40)] for i in range(40)]
+    signal = whole(40, draws, 2)
+    add(group, "forty modes", {
+        "record": added(signal, whole(40, draws, 3)), "noise": [draws.integer(1, 4) for _ in range(40)], "weights": [1], "covariances": neighbours(4),
+        "signals": [signal], "sizes": [2], "prior": [1], "shape": neighbours(3),
+    }, (16, 32))  # fmt: skip
+    args = drawn_args(draws, 2, 20, 8)
+    more = [whole(2, draws, 3) for _ in range(16)]
+    add(group, "twenty classes and twenty-four signals", {
+        **args, "signals": args["signals"] + more, "sizes": args["sizes"] * 3, "prior": [0.04] * 23 + [0.08],
+    }, ())  # fmt: skip
 
 
 def by_hand(group):

@@ -8,8 +8,8 @@ from mpmath import fdot, log, mpf, sqrt
 from .bank import is_explained, squares_left
 from .numbers import Draws, real
 from .nuisances import Space, length, reals, record, shapes
-from .series import signal
-from .suite import Group, absolute, case_by_case, is_exact, refuse_common, without
+from .series import added, signal, whole
+from .suite import Group, absolute, case_by_case, cut_answers, is_exact, refuse_common, without
 
 SOURCE = "Gram–Schmidt and least squares by normal equations for each beginning of the record, mpmath 1.3.0 at 50 digits"
 REASONS = {
@@ -70,7 +70,8 @@ def answer(args, upper_lower=None, beside=None):
     }
 
 
-def add(group, comment, residual, templates, nuisances, max_false_alarm=0.01, max_miss=0.01):
+def add(group, comment, residual, templates, nuisances, max_false_alarm=0.01, max_miss=0.01, cuts=None):
+    """With `cuts`, the wrong answers are those of the cut record alone."""
     args = {
         "residual": residual, "templates": templates, "nuisances": nuisances, "max_false_alarm": max_false_alarm, "max_miss": max_miss
     }
@@ -96,7 +97,7 @@ def add(group, comment, residual, templates, nuisances, max_false_alarm=0.01, ma
         ("rows_alone", stops(alone)),
         ("last_row_alone", stops([tuple(len(residual) * end for end in pair) for pair in last])),
         ("nominal_for_gamma", {"gamma": sizes}),
-    ]
+    ] if cuts is None else cut_answers(args, cuts, answer)
     group.accept(comment, args, ok, wrong, tolerance={key: absolute(bound, "1", REASONS[key]) for key, bound in tolerance.items()})
 
 
@@ -108,7 +109,16 @@ def sequential_evidence():
     drawn(group, draws)
     special(group, draws)
     refuse(group)
+    large(group)
     return group
+
+
+def large(group):
+    draws = Draws(248)
+    templates, offset = [[draws.decimal(-0.4, 0.4, 1) for _ in range(140)] for _ in range(2)], [1] * 140
+    add(group, "a long record", whole(140, draws, 2), templates, [offset], 0.05, 0.05, (64, 128))
+    templates, offset = [whole(8, draws, 2) for _ in range(20)], [1] * 8
+    add(group, "twenty templates", added(whole(8, draws, 6), templates[17]), templates, [offset], cuts=())
 
 
 def by_hand(group):

@@ -26,6 +26,15 @@ def noise(count, draws, deviation):
     return [round(deviation * (sum(draws.unit() for _ in range(12)) - 6), 5) for _ in range(count)]
 
 
+def whole(count, draws, most):
+    """Whole numbers but 0: long records of few bytes, in which every sample counts."""
+    return [draws.choice([-1, 1]) * draws.integer(1, most) for _ in range(count)]
+
+
+def added(*terms):
+    return [sum(values) for values in zip(*terms)]
+
+
 def exacts(values):
     return [exact(value) for value in values]
 

@@ -165,6 +165,17 @@ BAD_ARGUMENT = {"wrong_type", "missing_argument", "unknown_argument", "lengths_d
 """The flags of cases to be refused as `bad_argument`; others are `out_of_range`, if the case does not say otherwise."""
 
 
+def cut(value, count):
+    """Where no list holds more numbers than a buffer."""
+    if isinstance(value, dict):
+        return {key: cut(item, count) for key, item in value.items()}
+    return [cut(item, count) for item in value[:count]] if isinstance(value, list) else value
+
+
+def cut_answers(args, cuts, answer):
+    return [("record_cut", answer(cut(args, count))) for count in cuts]
+
+
 def without(args, name):
     return {key: value for key, value in args.items() if key != name}
 

@@ -186,6 +186,21 @@ def chi2_one_cell():
     changed("count_analysis", lambda ok, _: {**ok, "chi2": [x * (1 - p) for x, p in zip(ok["chi2"], ok["rate"])]})
 
 
+def record_cut():
+    """Buffers of fixed size."""
+
+    def cut(value, size):
+        return [cut(item, size) for item in value[:size]] if isinstance(value, list) else value
+
+    def buffered(op, size):
+        correct = getattr(right, op)
+        setattr(right, op, lambda **args: correct(**{name: cut(value, size) for name, value in args.items()}))
+
+    buffered("matched_filter", 256)
+    buffered("theta", 128)
+    buffered("theta_colored", 32)
+
+
 def bugs_of(names):
     """The bugs among the names of a module: its functions without parameters."""
     return {name: bug for name, bug in names.items() if isfunction(bug) and not bug.__code__.co_argcount}
