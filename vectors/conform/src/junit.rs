@@ -8,17 +8,27 @@ use super::suite::Suite;
 use super::text::escaped;
 use super::verdict::Verdict;
 
-/// The verdict as XML; `suite` is the one that was judged. A finding that the program does not fail for is a skipped test.
+/// The verdict as XML; `suite` is the one that was judged. A finding that the program does not fail for is a skipped test. If no case
+/// fails, but the program does, a test of its own tells why.
 ///
 /// Implements: ORA-050.
 pub fn junit(verdict: &Verdict, suite: &Suite) -> String {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let why = verdict.failure.as_deref();
+    let why = why.filter(|_| verdict.totals.failed == 0);
+    let verdict_itself = Counts {
+        cases: 1,
+        failed: 1,
+        ..Counts::default()
+    };
+    let mut all = verdict.totals.clone();
+    all += &why.map_or_else(Counts::default, |_| verdict_itself.clone());
     // Writing to a String cannot fail.
     let _ = writeln!(
         text,
         "<testsuites name=\"palpate-conform, vectors {}\" {}>",
         verdict.suite_sha256,
-        totals(&verdict.totals, "")
+        totals(&all, "")
     );
     let mut findings = verdict.findings.iter().peekable();
     let mut outcomes = verdict.outcomes.iter();
@@ -37,6 +47,15 @@ pub fn junit(verdict: &Verdict, suite: &Suite) -> String {
             );
         }
         text.push_str("</testsuite>\n");
+    }
+    if let Some(why) = why {
+        let _ = writeln!(
+            text,
+            "<testsuite name=\"verdict\" {}>\n<testcase classname=\"palpate.verdict\" name=\"the program passes\">\
+             <failure type=\"verdict\" message=\"{}\"/></testcase>\n</testsuite>",
+            totals(&verdict_itself, "errors=\"0\" "),
+            escaped(why)
+        );
     }
     text.push_str("</testsuites>\n");
     text

@@ -277,6 +277,9 @@ impl Judged {
             Format::Junit => junit(verdict, suite),
             Format::Html => page(verdict),
         })?;
-        verdict.failure().map_or(Ok(()), |why| Err(unmet(why)))
+        verdict
+            .failure
+            .as_ref()
+            .map_or(Ok(()), |why| Err(unmet(why)))
     }
 }

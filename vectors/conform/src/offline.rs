@@ -69,7 +69,7 @@ pub fn judge_files(
     };
     let (outcomes, notes) = judged.outcomes("no answer");
     let program = Program::of_answers(answers, version);
-    let verdict = Verdict::new(&suite, measure, program, outcomes, notes);
+    let verdict = Verdict::new(&suite, measure, program, outcomes, notes, 0);
     Ok((verdict, suite))
 }
 

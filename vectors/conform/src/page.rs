@@ -92,7 +92,10 @@ fn facts(verdict: &Verdict) -> Vec<Row> {
             "Required",
             &format!("{required}; extreme cases{extreme} count"),
         ),
-        fact("Result", &verdict.failure().unwrap_or("as required".into())),
+        fact(
+            "Result",
+            verdict.failure.as_deref().unwrap_or("as required"),
+        ),
         fact("Judged by", &judge),
     ]);
     rows

@@ -59,7 +59,7 @@ pub enum ConformError {
 /// # Errors
 /// [`ConformError`]; a program that answers wrongly, or ends, has a verdict.
 ///
-/// Implements: ORA-042, ORA-043, ORA-044, ORA-045, ORA-069.
+/// Implements: ORA-042, ORA-043, ORA-044, ORA-045, ORA-069, ORA-079.
 pub fn run(
     suite: &Suite,
     settings: &Settings,
@@ -76,13 +76,21 @@ pub fn run(
         alone: 0,
         starts: 1,
         silences: 0,
+        stops: Vec::new(),
         progress,
     };
     run.ask_all(partner)?;
     let never = "not asked: the program had ended or was silent too often";
+    let stops = run.stops.iter().map(|(_, times)| times).sum();
+    let told = run.stops.iter().map(|(why, times)| {
+        format!("stops before the end of the input: {times}, each time the program {why}")
+    });
+    run.answers.notes.extend(told);
     let (outcomes, notes) = run.answers.outcomes(never);
     let program = Program::of_command(&settings.command, claims.version());
-    Ok(Verdict::new(suite, measure, program, outcomes, notes))
+    Ok(Verdict::new(
+        suite, measure, program, outcomes, notes, stops,
+    ))
 }
 
 /// Starts the program and asks what it can do.
@@ -136,6 +144,8 @@ struct Run<'a, P> {
     alone: usize,
     starts: usize,
     silences: usize,
+    /// How it ended or was silent before its input ended, and how often so.
+    stops: Vec<(String, usize)>,
     progress: P,
 }
 
@@ -212,10 +222,14 @@ impl<P: FnMut(usize)> Run<'_, P> {
 
     /// The program is gone or silent. If one case was open, that is to blame; of several, each is asked again alone.
     ///
-    /// Implements: ORA-044, ORA-045.
+    /// Implements: ORA-044, ORA-045, ORA-079.
     fn bury(&mut self, partner: Partner, event: &Event) {
         self.silences += usize::from(matches!(event, Event::Silence));
         let why = farewell(partner, event, self.settings.timeout);
+        match self.stops.iter_mut().find(|(known, _)| *known == why) {
+            Some((_, times)) => *times += 1,
+            None => self.stops.push((why.clone(), 1)),
+        }
         if self.answers.open() == 1 {
             self.answers.fail(why);
             self.alone = self.alone.saturating_sub(1);

@@ -36,16 +36,24 @@ pub fn table(verdict: &Verdict) -> String {
         version => format!("version {version}: "),
     };
     let Counts {
-        failed, skipped, ..
+        failed,
+        accepted,
+        extreme,
+        skipped,
+        ..
     } = verdict.totals;
     let checked = verdict.totals.checked();
+    let as_they_should_be = checked - failed - accepted - extreme;
+    let apart = [(accepted, "accepted, "), (extreme, "extreme, ")];
+    let apart = apart.iter().filter(|(count, _)| *count > 0);
+    let apart = apart.map(|(count, kind)| format!("{count} {kind}"));
     format!(
-        "{}{}{}{mended}{}\n{version}{} of {checked} cases as they should be, {skipped} skipped; profile {}; vectors {}\n",
+        "{}{}{}{mended}{}\n{version}{as_they_should_be} of {checked} cases as they should be, {}{skipped} skipped; profile {}; vectors {}\n",
         counts(verdict),
         section("likely bugs", bugs),
         section("not right", listed),
         notes.collect::<String>(),
-        checked - failed,
+        apart.collect::<String>(),
         verdict.measure.profile.name,
         verdict.suite_sha256
     )

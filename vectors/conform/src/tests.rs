@@ -194,7 +194,7 @@ fn one_of_each() -> Vec<Outcome> {
 }
 
 fn verdict(suite: &Suite, measure: &Measure, outcomes: Vec<Outcome>) -> Verdict {
-    Verdict::new(suite, measure, Program::default(), outcomes, vec![])
+    Verdict::new(suite, measure, Program::default(), outcomes, vec![], 0)
 }
 
 /// An answer with the keys a, b, c.
@@ -349,7 +349,7 @@ fn what_is_required_decides_what_fails() {
     ] {
         let mut measure = Measure::exact();
         measure.require = require;
-        let failure = verdict(&two_groups(), &measure, one_of_each()).failure();
+        let failure = verdict(&two_groups(), &measure, one_of_each()).failure;
         assert_eq!(failure.unwrap(), format!("{failed} of 5 cases failed"));
     }
 }
@@ -374,13 +374,65 @@ fn a_program_without_a_value_that_was_judged_fails_whatever_is_required() {
     }
 }
 
+/// Every value of the group is extreme in the profile: a wrong one does not count, and shows nothing either.
+// Verifies: ORA-078, ORA-048.
+#[test]
+fn a_group_fails_of_which_no_value_is_right() {
+    let value = json!({"ok": {"a": 1e-38}});
+    let refusal = json!({"error": "out_of_range"});
+    let suite = suite(&[("a", &[value.clone(), value, refusal])], &[]);
+    let mut measure = Measure::exact();
+    measure.profile = Profile::named("f32").unwrap();
+    let [near, refused] = [Class::Mathematics, Class::Range].map(|of| Outcome::wrong(of, ""));
+    let loose = Outcome::Acceptable(String::new());
+    let left_out = Outcome::Skipped(String::new());
+    let right = Outcome::Right;
+    let words = "no value is right, so that nothing is shown of a";
+    for (require, known, values, failure) in [
+        (Require::Right, None, [&refused, &refused], Some(words)),
+        (Require::Right, None, [&near, &refused], Some(words)),
+        (Require::Mathematics, None, [&near, &refused], Some(words)),
+        (Require::Right, Some("a-0"), [&near, &refused], Some(words)),
+        (Require::Right, None, [&left_out, &refused], Some(words)),
+        (Require::Right, None, [&left_out, &left_out], Some(words)),
+        (Require::Right, None, [&right, &refused], None),
+        (Require::Right, None, [&right, &right], None),
+        (Require::Acceptable, None, [&loose, &near], None),
+        (Require::Right, Some("a-1"), [&right, &near], None),
+    ] {
+        measure.require = require;
+        let reason = |case: &str| (case.to_string(), "known".to_string());
+        measure.accepted = known.map(reason).into_iter().collect();
+        let outcomes = [values[0].clone(), values[1].clone(), Outcome::Right];
+        let found = verdict(&suite, &measure, outcomes.to_vec());
+        assert_eq!(found.failure.as_deref(), failure, "{require:?} {values:?}");
+        assert_eq!(found.passed, failure.is_none());
+        // Who reads the XML alone is told too.
+        let xml = junit(&found, &suite);
+        let failures = xml.matches("<failure").count();
+        assert_eq!(failures, failure.iter().count(), "{xml}");
+        assert!(xml.contains(failure.unwrap_or_default()), "{xml}");
+    }
+    // Extreme and accepted answers are not as they should be.
+    measure.accepted = [("a-0".into(), "known".into())].into();
+    let text = table(&verdict(&suite, &measure, vec![near, refused, right]));
+    let last = "\n1 of 3 cases as they should be, 1 accepted, 1 extreme, 0 skipped; profile f32; ";
+    assert!(text.contains(last), "{text}");
+    // Of an op that is not claimed or not asked there is nothing to show.
+    let unclaimed = vec![Outcome::Unclaimed("roc".into()); 3];
+    for outcomes in [unclaimed, vec![left_out; 3]] {
+        let failure = verdict(&suite, &measure, outcomes).failure.unwrap();
+        assert!(failure.starts_with("nothing checked"), "{failure}");
+    }
+}
+
 // Verifies: ORA-040, ORA-049.
 #[test]
 fn what_is_chosen_by_name_must_be_asked() {
     let mut measure = Measure::exact();
     let of = |measure: &Measure, second: Outcome| {
         let outcomes = [vec![Outcome::Right; 3], vec![second; 3]].concat();
-        verdict(&two_groups(), measure, outcomes).failure()
+        verdict(&two_groups(), measure, outcomes).failure
     };
     let [unclaimed, left_out] = [Outcome::Unclaimed, Outcome::Skipped].map(|of| of("roc".into()));
     assert_eq!(of(&measure, unclaimed.clone()), None);
@@ -397,7 +449,7 @@ fn what_is_chosen_by_name_must_be_asked() {
         vec![left_out, unclaimed.clone(), unclaimed],
     ]
     .concat();
-    let failure = verdict(&two_groups(), &measure, outcomes).failure();
+    let failure = verdict(&two_groups(), &measure, outcomes).failure;
     assert!(failure.unwrap().starts_with("roc not checked"));
 }
 

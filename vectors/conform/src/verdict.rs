@@ -36,11 +36,18 @@ pub struct Verdict {
     pub measure: Measure,
     /// Whether the program passes.
     pub passed: bool,
+    /// Why it fails, if it does.
+    pub failure: Option<String>,
+    /// How often the program ended or was silent before its input ended.
+    pub stops: usize,
     /// The counts of each group.
     pub groups: Vec<GroupCounts>,
     /// The ops of the groups that were not asked because the program does not claim them.
     #[serde(skip)]
     pub unclaimed: Vec<String>,
+    /// The groups in which no case failed, but no value was right either.
+    #[serde(skip)]
+    pub not_shown: Vec<String>,
     /// The sums of the counts over the groups.
     #[serde(skip)]
     pub totals: Counts,
@@ -67,6 +74,7 @@ impl Verdict {
         program: Program,
         outcomes: Vec<Outcome>,
         notes: Vec<String>,
+        stops: usize,
     ) -> Verdict {
         let mut verdict = Verdict {
             program,
@@ -74,8 +82,11 @@ impl Verdict {
             suite_sha256: suite.sha256.clone(),
             measure: measure.clone(),
             passed: false,
+            failure: None,
+            stops,
             groups: Vec::new(),
             unclaimed: Vec::new(),
+            not_shown: Vec::new(),
             totals: Counts::default(),
             diagnosis: Vec::new(),
             findings: Vec::new(),
@@ -90,7 +101,8 @@ impl Verdict {
             rest = others;
         }
         verdict.outcomes = outcomes;
-        verdict.passed = verdict.failure().is_none();
+        verdict.failure = verdict.why_it_fails();
+        verdict.passed = verdict.failure.is_none();
         verdict
     }
 
@@ -103,9 +115,10 @@ impl Verdict {
             ..
         } = &self.measure;
         let is_extreme = |index: usize| !extreme && profile.is_extreme(&group.cases[index]);
+        let has_values = group.cases.iter().any(|case| case.expected.is_number());
         let mut judged = group.cases.iter().zip(outcomes);
-        let shows_a_number =
-            judged.any(|(case, outcome)| case.expected.is_number() && outcome.is_of_number());
+        let shows_a_value =
+            judged.any(|(case, outcome)| case.expected.is_number() && outcome.is_right());
         let mut counts = Counts::default();
         for (index, (case, outcome)) in group.cases.iter().zip(outcomes).enumerate() {
             counts.cases += 1;
@@ -127,7 +140,7 @@ impl Verdict {
             let extreme = is_numeric && is_extreme(index);
             let is_permitted = match class {
                 Some(Class::Protocol) if case.expected.is_number() => false,
-                Some(Class::Range) if case.expected.is_number() && !shows_a_number => false,
+                Some(Class::Range) if case.expected.is_number() && !shows_a_value => false,
                 class => require.permits(class),
             };
             let finding = Finding {
@@ -148,6 +161,9 @@ impl Verdict {
         if outcomes.iter().any(is_unclaimed) {
             self.unclaimed.push(group.op.clone());
         }
+        if has_values && !shows_a_value && counts.checked() > 0 && counts.failed == 0 {
+            self.not_shown.push(group.name.clone());
+        }
         self.diagnosis
             .extend(diagnose(group, outcomes, |index| !is_extreme(index)));
         self.totals += &counts;
@@ -159,10 +175,11 @@ impl Verdict {
     }
 
     /// Why the program fails, if it does. That it refuses lines which everybody must refuse shows nothing: one of its ops must have been
-    /// asked, if these vectors have any, and each of them if they were chosen by name.
+    /// asked, if these vectors have any, and each of them if they were chosen by name. Nor is an op shown by refusals alone, and by wrong
+    /// values that do not count: one value must be right.
     ///
-    /// Implements: ORA-049.
-    pub fn failure(&self) -> Option<String> {
+    /// Implements: ORA-049, ORA-078, ORA-079.
+    fn why_it_fails(&self) -> Option<String> {
         let has_op = |group: &&GroupCounts| !group.op.is_empty();
         let ops: Vec<&GroupCounts> = self.groups.iter().filter(has_op).collect();
         let Counts { failed, .. } = self.totals;
@@ -184,6 +201,22 @@ impl Verdict {
                 "{ops} not checked: chosen by name, but the program does not claim it"
             ));
         }
-        (failed > 0).then(|| format!("{failed} of {checked} cases failed"))
+        let mut reasons = Vec::new();
+        if failed > 0 {
+            reasons.push(format!("{failed} of {checked} cases failed"));
+        }
+        if !self.not_shown.is_empty() {
+            let groups = self.not_shown.join(", ");
+            reasons.push(format!(
+                "no value is right, so that nothing is shown of {groups}"
+            ));
+        }
+        if self.stops > 0 {
+            reasons.push(format!(
+                "the program stopped before the end of its input (stops: {})",
+                self.stops
+            ));
+        }
+        (!reasons.is_empty()).then(|| reasons.join("; "))
     }
 }

@@ -13,7 +13,8 @@ use crate::program::*;
 #[test]
 fn our_oracle_passes_all_the_vectors_from_a_pipe_and_from_a_file() {
     let (folder, palpate) = (folder("ours"), palpate());
-    let piped = conform("--format json", &[&palpate, "oracle"]);
+    // A pose at finite strain takes a while on a loaded machine.
+    let piped = conform("--timeout-s 100 --format json", &[&palpate, "oracle"]);
     passes(&piped);
     assert!(piped.stderr.is_empty());
     let at = |words: &str| conform_at(&folder, words, &[]);
@@ -113,7 +114,7 @@ fn a_crash_is_blamed_on_its_case_and_the_others_are_asked() {
     run("dies", &script, &failures);
 }
 
-// Verifies: ORA-044, ORA-045.
+// Verifies: ORA-044, ORA-045, ORA-079.
 #[test]
 fn cases_that_were_open_together_are_asked_again_alone() {
     // It dies of two lines at a time, so that it must be started again, once.
@@ -122,10 +123,72 @@ fn cases_that_were_open_together_are_asked_again_alone() {
         "echo start >>starts; while :; do sleep 0.1; lines=$(dd bs=65536 count=1 2>/dev/null)\n\
          case \"$lines\" in '') exit 0;; *'\n'*) exit 7;; esac; printf '%s\\n' \"$lines\" | '{palpate}' oracle; done"
     );
-    run("alone", &script, &[]);
+    // No case is to blame, and the program does not pass.
+    let output = ask(&write("alone", &vectors()), "--format json", &script);
+    fails(&output, 1, "stopped before the end of its input");
+    let verdict = json_of(&output);
+    assert_eq!(total(&verdict, "right"), 4, "{verdict}");
     let starts = folder_of("alone").join("starts");
     let starts = fs::read_to_string(starts).expect("the program was started");
     assert!(starts.lines().count() <= 2, "{starts}");
+}
+
+/// Nine cases like the one with this number.
+fn nine_of(number: usize) -> Value {
+    let mut many = vectors();
+    let case = many["cases"][number].clone();
+    let cases = (0..9).map(|index| {
+        let mut case = case.clone();
+        case["id"] = json!(format!("choice-1{index:02}"));
+        case
+    });
+    many["cases"] = cases.collect();
+    let flags = many["flags"].as_object_mut().expect("flags");
+    let shown = case["flags"].as_array().expect("a list");
+    flags.retain(|flag, _| shown.contains(&json!(flag)));
+    many
+}
+
+// Verifies: ORA-048, ORA-079.
+#[test]
+fn a_program_that_stops_before_the_end_of_its_input_fails_and_the_verdict_says_how() {
+    let folder = write("stops", &nine_of(2));
+    fs::write(folder.join("known"), "choice-107 crashes\n").expect("written");
+    let refusing = |first: &str| refusing("\"two_afc\"", first);
+    let killed = refusing("[ $answered -lt 6 ] || kill -SEGV $$");
+    let silent = refusing("[ $answered -lt 6 ] || exec sleep 60");
+    let crashes = refusing("case $id in choice-107) exit 7;; esac");
+    let hangs_up = refusing("") + "; exit 3";
+    for (options, script, stops, note) in [
+        ("", &killed, 1, "signal: 11"),
+        ("--timeout-s 2", &silent, 1, "no answer within 2 s"),
+        // What is accepted, or permitted, is a finding that does not count; the stops count.
+        ("--accept known", &crashes, 2, "exit status: 7"),
+        ("--require range", &crashes, 2, "exit status: 7"),
+        ("", &hangs_up, 0, "at the end of its input: exit status: 3"),
+    ] {
+        let at = |format: &str| ask(&folder, &format!("{options} --format {format}"), script);
+        let output = at("json");
+        let verdict = json_of(&output);
+        let failure = format!("stopped before the end of its input, stops: {stops}");
+        match stops {
+            0 => passes(&output),
+            _ => fails(&output, 1, &failure),
+        }
+        assert_eq!(verdict["stops"], stops, "{verdict}");
+        assert_eq!(verdict["passed"], stops == 0);
+        let notes = verdict["notes"].as_array().expect("notes");
+        assert!(
+            notes.len() == 1 && notes[0].to_string().contains(note),
+            "{notes:?}"
+        );
+        for format in ["table", "html"] {
+            let output = at(format);
+            assert!(stdout(&output).contains(note), "{output:?}");
+        }
+        let failures = stdout(&at("junit")).matches("<failure").count();
+        assert_eq!(failures, usize::from(stops > 0));
+    }
 }
 
 // Verifies: ORA-044, ORA-045.
@@ -136,16 +199,10 @@ fn silence_is_blamed_on_its_case_and_the_others_are_asked() {
     let failures = [("choice-003", "no answer within 2 s")];
     run_within("2", "silence", &script, &failures);
     // After six silences the rest is not asked.
-    let mut many = vectors();
-    let case = many["cases"][0].clone();
-    let cases = (0..9).map(|index| {
-        let mut case = case.clone();
-        case["id"] = json!(format!("choice-1{index:02}"));
-        case
-    });
-    many["cases"] = cases.collect();
-    many["flags"] = json!({});
-    let (folder, script) = (write("silent", &many), shell("*choice*) exec sleep 60;;"));
+    let (folder, script) = (
+        write("silent", &nine_of(0)),
+        shell("*choice*) exec sleep 60;;"),
+    );
     let output = ask(&folder, "--timeout-s 0.5", &script);
     fails(&output, 1, "9 of 9 cases failed");
     assert!(stdout(&output).contains("silent 6 times"), "{output:?}");

@@ -68,6 +68,29 @@ fn a_profile_widens_the_tolerance_by_the_condition() {
     fails(&output, 2, "a profile is exact, f64, f32 or a JSON file");
 }
 
+/// In a precision without numbers above 1 every value of these ops is extreme.
+// Verifies: ORA-078.
+#[test]
+fn who_refuses_everything_fails_in_every_precision() {
+    let folder = folder("refuses");
+    let q31 = r#"{"name": "Q31", "unit_roundoff": 2.3e-10, "smallest": 1e-9, "largest": 1}"#;
+    fs::write(folder.join("q31.json"), q31).expect("written");
+    let refuses = refusing(r#""theta","noise_budget""#, "");
+    let ours = format!("exec '{}' oracle", palpate());
+    let options = "--profile q31.json --only theta --only noise_budget --format html";
+    let asked = |script: &str| conform_at(&folder, options, &["sh", "-c", script]);
+    let output = asked(&refuses);
+    let words = "no value is right, so that nothing is shown of noise_budget, theta";
+    fails(&output, 1, words);
+    let page = stdout(&output);
+    assert!(
+        page.contains("vectors: failed") && page.contains(words),
+        "{page}"
+    );
+    // Who answers rightly passes, though none of it counts.
+    passes(&asked(&ours));
+}
+
 // Verifies: ORA-067.
 #[test]
 fn known_mistakes_are_accepted_with_their_reason_and_told_when_they_are_mended() {

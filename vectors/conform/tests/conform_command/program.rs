@@ -140,6 +140,21 @@ pub fn answering(case: &str, answer: &str) -> String {
     ))
 }
 
+/// A shell that claims these ops and refuses each question, but first does what `first` says.
+pub fn refusing(ops: &str, first: &str) -> String {
+    let shell = r#"
+        answered=0
+        while IFS= read -r line; do
+            id=$(printf '%s' "$line" | sed 's/.*"id":"\([^"]*\)".*/\1/')
+            case $id in
+            capabilities) echo '{"id":"capabilities","ok":{"version":"1","ops":[OPS]}}';;
+            *) FIRST
+               echo "{\"id\":\"$id\",\"error\":{\"code\":\"x\"}}"; answered=$((answered + 1));;
+            esac
+        done"#;
+    shell.replace("OPS", ops).replace("FIRST", first)
+}
+
 /// Asks a shell program the vectors of a folder.
 pub fn ask(folder: &Path, options: &str, script: &str) -> Output {
     let options = format!("--vectors . {options}");
