@@ -27,6 +27,17 @@ pub const PARTS: [&str; 7] = [
     "tests",
 ];
 
+/// The parts that a run leaves out: those that `only` does not name, and `tests` without a test run. A test run that is given is
+/// always checked, because the dossier counts its tests.
+pub fn left_out(only: Option<&[String]>, has_test_run: bool) -> Vec<&'static str> {
+    let is_asked = |part: &str| only.is_none_or(|only| only.iter().any(|asked| asked == part));
+    let runs = |part: &str| match part {
+        "tests" => has_test_run,
+        _ => is_asked(part),
+    };
+    PARTS.into_iter().filter(|part| !runs(part)).collect()
+}
+
 /// What a run found.
 #[derive(Debug, Clone)]
 pub struct Evidence {
@@ -38,7 +49,7 @@ pub struct Evidence {
     pub executables: Vec<(String, String)>,
     /// The test runs that were given.
     pub test_runs: Vec<TestRun>,
-    /// Parts that were not asked for.
+    /// Parts that did not run ([`left_out`]).
     pub left_out: Vec<&'static str>,
     /// Every check that was carried out, in the order of [`PARTS`].
     pub outcomes: Vec<Outcome>,
@@ -220,5 +231,26 @@ impl Counts {
         self.tests += usize::from(!row.tests.is_empty());
         self.proofs += usize::from(!row.proofs.is_empty());
         self.none += usize::from(!row.is_shown());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_tests_are_left_out_if_and_only_if_there_is_no_test_run() {
+        let only = |part: &str| [part.to_string()];
+        assert_eq!(left_out(None, false), ["tests"]);
+        assert!(left_out(None, true).is_empty());
+        let [others @ .., _] = PARTS;
+        for part in ["soak", "tests"] {
+            assert_eq!(left_out(Some(&only(part)), true), others, "{part}");
+        }
+        assert_eq!(left_out(Some(&only("soak")), false), PARTS);
+        let but_rates = ["statistics", "program", "fem", "kernel", "timing"];
+        assert_eq!(left_out(Some(&only("rates")), true), but_rates);
+        let without = [&but_rates[..], &["tests"]].concat();
+        assert_eq!(left_out(Some(&only("rates")), false), without);
     }
 }

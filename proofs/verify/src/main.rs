@@ -13,7 +13,7 @@ use palpate_program::output::{make_folder, print, write};
 use palpate_program::progress::bar;
 use palpate_program::{CliError, program as command};
 use palpate_verify::components::Component;
-use palpate_verify::evidence::{Evidence, PARTS, Soak, Verdict};
+use palpate_verify::evidence::{Evidence, PARTS, Soak, Verdict, left_out};
 use palpate_verify::planted::Planted;
 use palpate_verify::statistics::{battery, total_alpha};
 use palpate_verify::system::System;
@@ -32,10 +32,10 @@ struct Arguments {
     /// Runs only these parts; the dossier is then no verdict on the build
     #[arg(long, value_name = "PART,…", value_parser = asked(), value_delimiter = ',')]
     only: Option<Vec<String>>,
-    /// The program palpate to judge [default: the one beside palpate-verify]
+    /// The file of the program palpate to judge; PATH is not searched [default: the one beside palpate-verify]
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
-    /// A test run, as .ci/run writes it to target/results/test-run.json; may be given several times
+    /// A test run, as .ci/run writes it to target/results/test-run.json; always checked; may be given several times
     #[arg(long, value_name = "FILE")]
     test_run: Vec<PathBuf>,
     /// What the tests find of planted defects, as `.ci/run all` writes it to target/ledger.json
@@ -68,9 +68,9 @@ fn main() -> ExitCode {
 
 /// Carries out the checks, and writes what came out.
 fn verify(arguments: &Arguments) -> Result<(), CliError> {
-    let only = arguments.only.as_ref();
-    let asked = |part: &str| only.is_none_or(|only| only.iter().any(|asked| asked == part));
     let inputs = Inputs::read(arguments)?;
+    let left_out = left_out(arguments.only.as_deref(), !inputs.test_runs.is_empty());
+    let runs = |part: &str| !left_out.contains(&part);
     // What can fail at once comes first: minutes of work shall not end for want of a place.
     make_folder(&arguments.out)?;
     let soak = arguments
@@ -84,28 +84,22 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
         ))?;
     }
     let system = System::here(arguments.operator.clone());
-    let judged = arguments.program.clone().unwrap_or_else(program::beside);
     let executable = |path: PathBuf| Some((path.display().to_string(), program::sha256(&path)?));
     let own = std::env::current_exe().ok();
-    let mut outcomes = carry_out(&asked, &judged);
-    if !inputs.test_runs.is_empty() && asked("tests") {
+    let mut outcomes = carry_out(&runs, &inputs.judged);
+    if runs("tests") {
         outcomes.push(test_run::outcome(
             &inputs.test_runs,
             Build::THIS.known_commit(),
         ));
     }
     let soak = soak.map(|(batteries, seed)| soak_battery(batteries, seed));
-    let executables = own.into_iter().chain([judged]).filter_map(executable);
-    // Without a test run there are no checks of it to leave out.
-    let is_there = |part: &str| part != "tests" || !inputs.test_runs.is_empty();
-    let left_out = PARTS
-        .into_iter()
-        .filter(|&part| !asked(part) && is_there(part));
+    let executables = own.into_iter().chain([inputs.judged]);
     let evidence = Evidence {
         build: Build::THIS,
         system,
-        executables: executables.collect(),
-        left_out: left_out.collect(),
+        executables: executables.filter_map(executable).collect(),
+        left_out,
         soak,
         requirements: evidence_by_requirement(&inputs.test_runs, &outcomes),
         outcomes,
@@ -119,6 +113,8 @@ fn verify(arguments: &Arguments) -> Result<(), CliError> {
 
 /// The files that were given.
 struct Inputs {
+    /// The program to judge, by its absolute path: what runs is what is hashed.
+    judged: PathBuf,
     test_runs: Vec<TestRun>,
     components: Vec<Component>,
     bill_of_materials: Option<String>,
@@ -144,7 +140,9 @@ impl Inputs {
             None => Ok(components::locked()),
         };
         let planted = arguments.planted.as_deref().map(Planted::read);
+        let judged = program::judged(arguments.program.as_deref());
         Ok(Inputs {
+            judged: judged.map_err(|error| CliError::Usage(format!("--program: {error}")))?,
             planted: planted.transpose().map_err(CliError::Usage)?,
             test_runs: test_runs
                 .collect::<Result<_, _>>()
@@ -160,23 +158,20 @@ fn fresh_seed() -> u64 {
     RandomState::new().hash_one(0)
 }
 
-/// Carries out every check of the parts that were asked for. Those of time come last, and alone.
-fn carry_out(asked: &dyn Fn(&str) -> bool, judged: &Path) -> Vec<Outcome> {
+/// Carries out every check of the parts that run, but that of the test runs. Those of time come last, and alone.
+fn carry_out(runs: &dyn Fn(&str) -> bool, judged: &Path) -> Vec<Outcome> {
     type Job<'a> = Box<dyn Fn() -> Outcome + Sync + 'a>;
-    let is_asked = |claim: &Claim| asked(claim.name.split('.').next().unwrap_or_default());
+    let of_part = |claim: &Claim| runs(claim.name.split('.').next().unwrap_or_default());
     let mut jobs: Vec<Job> = Vec::new();
-    for check in battery().filter(|_| asked("statistics")) {
+    for check in battery().filter(|_| runs("statistics")) {
         jobs.push(Box::new(move || battery_outcome(check)));
     }
-    for check in program::CHECKS
-        .iter()
-        .filter(|check| is_asked(&check.claim))
-    {
+    for check in program::CHECKS.iter().filter(|check| of_part(&check.claim)) {
         let judge = move || Outcome::measured(&check.claim, || (check.run)(judged));
         jobs.push(Box::new(judge));
     }
     let is_timed = |check: &&Check| check.claim.name.starts_with("timing.");
-    let checks = checks().filter(|check| is_asked(&check.claim));
+    let checks = checks().filter(|check| of_part(&check.claim));
     let (timed, others): (Vec<_>, Vec<_>) = checks.partition(is_timed);
     for check in others {
         jobs.push(Box::new(move || Outcome::of(check)));

@@ -12,7 +12,7 @@ use palpate_conform::{Finding, Measure, Program, Settings, Suite, run};
 use super::fem::largest;
 use super::{Check, Figure, Measured};
 
-/// Judges a program by its path.
+/// Judges a program by its absolute path ([`judged`]).
 pub type Judge = fn(&Path) -> Measured;
 
 /// The checks of this part.
@@ -43,6 +43,15 @@ pub const CHECKS: &[Check<Judge>] = checks! {
 /// Forces by other programs.
 const OUTSIDE: &str = include_str!("outside.csv");
 
+/// The absolute path of the program to judge: the file that was named, from the current folder and never from `PATH`, or
+/// [`beside`].
+///
+/// # Errors
+/// If the name is empty or the current folder is not known.
+pub fn judged(named: Option<&Path>) -> std::io::Result<PathBuf> {
+    std::path::absolute(named.map_or_else(beside, Path::to_path_buf))
+}
+
 /// The program beside the one that runs.
 pub fn beside() -> PathBuf {
     let own = std::env::current_exe().unwrap_or_default();
@@ -57,8 +66,7 @@ pub fn sha256(program: &Path) -> Option<String> {
 
 /// What the program does in a folder.
 fn run_in(folder: &Path, program: &Path, arguments: &[&str]) -> Measured<Output> {
-    let program = std::path::absolute(program)?;
-    let mut command = Command::new(&program);
+    let mut command = Command::new(program);
     let output = command.args(arguments).current_dir(folder).output();
     Ok(output.map_err(|error| {
         let shown = program.display();
@@ -256,6 +264,19 @@ pub(crate) mod tests {
             assert!(!outcome.passed());
             assert!(outcome.complaint().unwrap().contains(why), "{outcome:?}");
         }
+    }
+
+    #[test]
+    fn a_program_is_the_file_of_its_path() {
+        let here = std::env::current_dir().unwrap();
+        let of = |named: &str| judged(Some(Path::new(named))).unwrap();
+        // A name that PATH knows, too.
+        for named in ["sh", "./sh"] {
+            assert_eq!(of(named), here.join("sh"));
+        }
+        assert_eq!(of("/bin/sh"), Path::new("/bin/sh"));
+        assert_eq!(judged(None).unwrap(), beside());
+        assert!(judged(Some(Path::new(""))).is_err());
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! `palpate-verify`.
 
 use std::fs;
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use palpate_verify::program::sha256;
 use serde_json::Value;
 
 /// Runs the command with a folder of its own.
@@ -13,14 +15,20 @@ fn verify(folder: &str, arguments: &[&str]) -> (Output, PathBuf) {
 
 /// The same on so many threads; 0 for one a processor.
 fn verify_on(threads: &str, folder: &str, arguments: &[&str]) -> (Output, PathBuf) {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("verify")
-        .join(folder);
-    let _ = fs::remove_dir_all(&folder);
+    let folder = place(folder);
     let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-verify"));
     command.args(arguments).arg("--out").arg(&folder);
     let output = command.env("RAYON_NUM_THREADS", threads).output().unwrap();
     (output, folder)
+}
+
+/// The path of a folder that is not there.
+fn place(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("verify")
+        .join(name);
+    let _ = fs::remove_dir_all(&folder);
+    folder
 }
 
 fn evidence(folder: &Path) -> Value {
@@ -66,18 +74,19 @@ fn a_part_gives_all_files() {
     let evidence = evidence(&folder);
     assert_eq!(evidence["checks"].as_array().unwrap().len(), 8);
     assert_eq!(evidence["verdict"], "partial");
-    assert_eq!(evidence["parts_left_out"].as_array().unwrap().len(), 5);
+    let left_out = ["statistics", "program", "fem", "kernel", "timing", "tests"];
+    assert_eq!(evidence["parts_left_out"], serde_json::json!(left_out));
     // The heads alone: no test run was given.
     let heads = ["requirements.csv", "test-runs.csv"].map(|name| read(name).lines().count());
     assert_eq!(heads, [1, 1]);
     assert_eq!(evidence["requirements"], Value::Null);
-    assert!(read("dossier.html").contains("not run: statistics, program, fem, kernel, timing"));
+    let told = format!("not run: {}. ", left_out.join(", "));
+    assert!(read("dossier.html").contains(&told));
 }
 
-#[test]
-fn a_test_run_is_joined_to_the_requirements() {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
-    let path = folder.join("test-run.json");
+/// Writes a test run of another commit, in which the test of the only requirement passed.
+fn foreign_test_run(name: &str) -> String {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
     let run = serde_json::json!({
         "schema": "palpate-test-run",
         "commit": "another",
@@ -97,8 +106,13 @@ fn a_test_run_is_joined_to_the_requirements() {
         "entries": [{"name": "program test", "result": "passed", "seconds": 0.5}],
     });
     fs::write(&path, run.to_string()).unwrap();
-    let arguments = ["--only", "tests", "--test-run", path.to_str().unwrap()];
-    let (output, folder) = verify("tests", &arguments);
+    path.to_str().unwrap().into()
+}
+
+#[test]
+fn a_test_run_is_joined_to_the_requirements() {
+    let run = foreign_test_run("test-run.json");
+    let (output, folder) = verify("tests", &["--only", "tests", "--test-run", &run]);
     // It is of another commit.
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(text(&output.stderr).contains("1 of 1 checks failed: tests.complete"));
@@ -106,6 +120,55 @@ fn a_test_run_is_joined_to_the_requirements() {
     let row = "AAA-001,a.md,It MUST.,a.rs,program test,,,,program test,,,";
     assert_eq!(read("requirements.csv").lines().nth(1), Some(row));
     assert!(read("evidence.json").contains("\"test runs of another commit than this build's\""));
+}
+
+#[test]
+fn a_test_run_is_checked_even_if_only_another_part_is_asked_for() {
+    let run = foreign_test_run("test-run-of-another.json");
+    let (output, folder) = verify("foreign", &["--only", "rates", "--test-run", &run]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(text(&output.stderr).contains("1 of 9 checks failed: tests.complete"));
+    assert!(text(&output.stdout).contains("\ntests: 0 of 1 checks passed\n"));
+    let evidence = evidence(&folder);
+    assert_eq!(evidence["verdict"], "failed");
+    let left_out = ["statistics", "program", "fem", "kernel", "timing"];
+    assert_eq!(evidence["parts_left_out"], serde_json::json!(left_out));
+    let page = fs::read_to_string(folder.join("dossier.html")).unwrap();
+    let (head, _) = page.split_once("<main>").unwrap();
+    assert!(head.contains("<strong>test runs of another commit than this build&#39;s: 1"));
+}
+
+#[test]
+fn a_name_without_a_folder_is_the_file_here_and_not_one_of_the_search_path() {
+    let [here, elsewhere] = ["program-here", "program-elsewhere"].map(place);
+    // Each notes beside itself how it was run.
+    for (folder, end) in [(&here, "exit 3"), (&elsewhere, "exit 4")] {
+        let program = folder.join("palpate");
+        fs::create_dir_all(folder).unwrap();
+        let script = format!("#!/bin/sh\necho \"$@\" >> \"$0.ran\"\n{end}\n");
+        fs::write(&program, script).unwrap();
+        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+    }
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let path = [elsewhere.clone()]
+        .into_iter()
+        .chain(std::env::split_paths(&path));
+    let out = place("program");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_palpate-verify"));
+    command.args(["--only", "program", "--program", "palpate", "--out"]);
+    command.arg(&out).current_dir(&here);
+    command.env("PATH", std::env::join_paths(path).unwrap());
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let ran = fs::read_to_string(here.join("palpate.ran")).unwrap();
+    for asked in ["--version", "oracle", "solve", "detect"] {
+        let mut lines = ran.lines();
+        assert!(lines.any(|line| line.starts_with(asked)), "{asked}: {ran}");
+    }
+    assert!(!elsewhere.join("palpate.ran").exists());
+    let program = here.join("palpate");
+    let judged = serde_json::json!([program, sha256(&program).unwrap()]);
+    assert_eq!(evidence(&out)["measured_here"]["executables"][1], judged);
 }
 
 #[test]
@@ -138,6 +201,7 @@ fn bad_arguments_are_refused() {
         &["--planted", "Cargo.toml"],
         &["--only", "statistics,physics"],
         &["--only", ""],
+        &["--program", ""],
     ] {
         let (output, folder) = verify("refused", arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
