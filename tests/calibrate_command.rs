@@ -94,6 +94,29 @@ fn several_curves_are_told_apart_and_together() {
     );
 }
 
+// Verifies: CLI-238.
+#[test]
+fn a_modulus_far_from_the_phantoms_is_told() {
+    let place = place();
+    let curve = place.read("demo/curve.csv");
+    let line = "calibrate curve.csv --phantom none";
+    for (power, is_told) in [("", false), ("e3", true), ("e-3", true)] {
+        let rows = curve.lines().skip(1).map(|row| format!("{row}{power}\n"));
+        let rows: String = rows.collect();
+        place.write(
+            "curve.csv",
+            format!("time_s,depth_mm,normal_force_n\n{rows}"),
+        );
+        let output = place.run(line);
+        let told = text(&output.stderr);
+        assert_eq!(
+            told.contains("check the unit of the forces"),
+            is_told,
+            "{power}: {told}"
+        );
+    }
+}
+
 // Verifies: CAL-040, CLI-176, CAL-033.
 #[test]
 fn a_curve_that_cannot_be_judged_writes_no_phantom() {

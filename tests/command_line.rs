@@ -489,15 +489,18 @@ fn no_file_is_read_and_then_overwritten() {
     let here = Place::new("read-and-written");
     let phantom = include_str!("../docs/phantom.toml");
     here.write("gel.toml", phantom);
+    here.write("bank.svg", phantom);
     for line in [
         "solve --phantom gel.toml --depths-mm 1 --laterals-mm 0 --mesh-mm 2 --vtu gel.toml",
         "solve --phantom gel.toml --depths-mm 1 --laterals-mm 0 --mesh-mm 2 --vtu=./gel.toml",
-        "reach --bank gel.toml --noise-sd-n 0.1 --figure gel.toml",
+        "reach --bank bank.svg --noise-sd-n 0.1 --figure bank.svg",
         "play --record gel.toml --map=gel.toml",
     ] {
         let refused = here.refused(line);
         let expected = "is read by this command, which would overwrite it; choose another --";
         assert!(refused.contains(expected), "{line}: {refused}");
-        assert_eq!(here.read("gel.toml"), phantom, "{line}");
+        for file in ["gel.toml", "bank.svg"] {
+            assert_eq!(here.read(file), phantom, "{line}");
+        }
     }
 }

@@ -100,6 +100,7 @@ class _Judged(_Place, total=False):
     noise_sd_normal_n: float | list[float | None] | None
     glitches: list[int]
     samples_in_air: list[list[int]]
+    samples_left_out: int
 
 class _LikeliestPlace(TypedDict):
     position_m: float

@@ -8,12 +8,12 @@ use serde_json::json;
 use super::error::refuse;
 use super::layout::LayoutArguments;
 use super::numbers::{for_each, length, position};
-use super::output::{Envelope, note, write};
+use super::output::{Envelope, note, svg_file, warn, write};
 use super::solve::{phantom, tell_large_strain_to};
 use super::{CliError, Format};
 use palpate::calibration::{
-    Calibration, CalibrationQuestion, Curve, Elastic, Indentation, calibrate as fitted, calibrated,
-    modulus_row, pooled_moduli,
+    Calibration, CalibrationQuestion, Curve, Elastic, Indentation, Interval, calibrate as fitted,
+    calibrated, modulus_row, pooled_moduli,
 };
 use palpate::chart::calibration_figure;
 use palpate::fem::MESH_SIZE;
@@ -55,7 +55,7 @@ pub struct CalibrateArguments {
     #[arg(long, value_name = "FILE.toml")]
     uncertainty_out: Option<PathBuf>,
     /// Writes a figure as SVG: each curve, its fit, and the residual
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file())]
     figure: Option<PathBuf>,
     /// Output format
     #[arg(long, value_enum, default_value_t = Format::Table)]
@@ -125,10 +125,13 @@ fn layers(
     let all = phantom.map_or(&[][..], Phantom::layers);
     let mut numbers = Vec::new();
     for name in &arguments.layers {
-        let number = all.iter().position(|layer| layer.name == *name);
-        match number.filter(|number| !numbers.contains(number)) {
-            Some(number) => numbers.push(number),
-            None => {
+        let named = (0..all.len()).filter(|&number| all[number].name == *name);
+        match named.collect::<Vec<_>>()[..] {
+            [number] if !numbers.contains(&number) => numbers.push(number),
+            [_, _, ..] => {
+                refuse!("--layer {name:?} is the name of several layers; give each its own")
+            }
+            _ => {
                 let names: Vec<_> = all.iter().map(|layer| &*layer.name).collect();
                 refuse!(
                     "--layer {name:?} is unknown or given twice; give each once, of {}",
@@ -147,6 +150,24 @@ fn contact(text: &str) -> Result<Option<f64>, CliError> {
             Ok(depth) => Ok(Some(depth)),
             Err(error) => refuse!("--contact {depth:?}: {error}, or auto"),
         },
+    }
+}
+
+/// A modulus that is so many times the phantom's, or so many times smaller, is more likely a force in another unit.
+const FAR: f64 = 30.0;
+
+/// Warns of moduli that are far from those of the phantom.
+///
+/// Implements: CLI-238.
+fn tell_far_moduli(phantom: &Phantom, layers: &[usize], moduli: &[(String, Interval)]) {
+    let numbers = if layers.is_empty() { &[0] } else { layers };
+    for (number, (name, modulus)) in numbers.iter().zip(moduli) {
+        let factor = modulus.estimate / phantom.layers()[*number].material.youngs_modulus;
+        if !(1.0 / FAR..=FAR).contains(&factor) {
+            warn(&format!(
+                "{name}: {factor:.2e} times Young's modulus of the phantom; check the unit of the forces, or give a phantom nearer to the gel"
+            ));
+        }
     }
 }
 
@@ -181,6 +202,9 @@ fn tell(
         modulus_row(&mut all, "all curves: Young's modulus, kPa", &moduli);
         table.push(all.table());
         answer.append(all);
+    }
+    if let Some(phantom) = phantom {
+        tell_far_moduli(phantom, layers, &moduli);
     }
     let answer = Envelope::new("palpate-calibration", 1, answer);
     arguments.format.print(&answer, || table.concat())?;

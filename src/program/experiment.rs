@@ -110,6 +110,9 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
     if arguments.observer == Observer::Ideal && !arguments.device.is_simulated() {
         refuse!("--observer ideal has no hand; use --device sim");
     }
+    if arguments.observer == Observer::Person && arguments.noise.is_some() {
+        refuse!("--noise is of the ideal observer; add --observer ideal, or leave --noise out");
+    }
     let mut setup = arguments.setup();
     setup.check_names()?;
     let pairs = Pairs::read(arguments)?;
@@ -148,11 +151,6 @@ impl ExperimentArguments {
         self.inclusion.len() * self.trials as usize
     }
 
-    /// The ideal observer's noise, N; none where a person answers.
-    fn noise_sd(&self) -> Option<f64> {
-        self.noise.filter(|_| self.observer == Observer::Ideal)
-    }
-
     /// All but the maps, which are not read yet.
     fn setup(&self) -> Setup {
         let names = self.inclusion.iter().map(|(name, _)| name.clone());
@@ -168,7 +166,7 @@ impl ExperimentArguments {
             condition: self.condition.clone(),
             inclusions: names.collect(),
             observer: observer.into(),
-            noise_sd: self.noise_sd(),
+            noise_sd: self.noise,
             seconds: self.seconds,
             maps_sha256: Vec::new(),
         }
@@ -247,7 +245,7 @@ impl<'a> Pairs<'a> {
         if trial.with_inclusion == Interval::First {
             samples.reverse();
         }
-        let Some(noise_sd) = self.arguments.noise_sd() else {
+        let Some(noise_sd) = self.arguments.noise else {
             return self.ask(number, samples);
         };
         let observer = IdealObserver {

@@ -14,7 +14,7 @@ pub struct LayoutArguments {
     /// Which column holds what, if its name does not tell: a list such as 'position=Z(mm), normal=-Load*0.5[mN]' of position, time, depth,
     /// normal and lateral, each with a name of the header or a number from 1; or a TOML file with such entries in its table [columns]
     #[arg(long, value_name = "LIST|FILE.toml", allow_hyphen_values = true)]
-    columns: Option<String>,
+    pub(super) columns: Option<String>,
     /// Lines to leave out at the start of a file
     #[arg(long, value_name = "N", default_value_t = 0)]
     skip_rows: usize,

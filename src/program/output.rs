@@ -3,12 +3,13 @@
 use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{Error, ErrorKind, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anstream::{AutoStream, ColorChoice};
 use anstyle::AnsiColor;
 use clap::ValueEnum;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -217,6 +218,19 @@ pub fn write(path: &Path, text: &str) -> Result<(), CliError> {
 /// Implements: CLI-235.
 pub fn write_new(path: &Path, text: &str) -> Result<(), CliError> {
     file::write_new(path, text).map_err(CliError::file("write", path))
+}
+
+/// The name of a file for a figure; one whose ending is that of another format is refused.
+///
+/// Implements: CLI-237.
+pub fn svg_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| {
+        let is_svg = path
+            .extension()
+            .is_none_or(|ending| ending.eq_ignore_ascii_case("svg"));
+        let wrong = "figures are SVG; choose a name that ends in .svg";
+        is_svg.then_some(path).ok_or(wrong)
+    })
 }
 
 /// Reads a text file.

@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::detect::arguments::{Known, NoiseSd};
 use super::error::refuse;
 use super::numbers::probability;
-use super::output::{Envelope, write};
+use super::output::{Envelope, svg_file, write};
 use super::path::PathArguments;
 use super::{CliError, Format};
 use palpate::bank::{Bank, BesideClass, Reach, Reached, smallest_diameters};
@@ -51,7 +51,7 @@ pub struct ReachArguments {
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
     /// Writes a figure of the greatest detectable depths as SVG
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file())]
     figure: Option<PathBuf>,
 }
 

@@ -13,7 +13,7 @@ use super::error::refuse;
 use super::input::{lines, next};
 use super::layout::LayoutArguments;
 use super::numbers::probability;
-use super::output::{self, Envelope, printed};
+use super::output::{self, Envelope, printed, svg_file};
 use super::platform::stop_on_signals;
 use palpate::bank::{Bank, WatchAnswer, WatchQuestion, Watcher};
 use palpate::chart::coverage_figure;
@@ -56,7 +56,7 @@ pub struct WatchArguments {
     #[arg(long, value_name = "N", default_value_t = 0)]
     every_ms: u64,
     /// Writes a figure as SVG when the sweep is over: what it has told of each place of the bank
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file())]
     figure: Option<PathBuf>,
     #[command(flatten)]
     layout: LayoutArguments,

@@ -140,6 +140,8 @@ fn each_sample_has_one_depth() {
         let found = answer(&format!(
             "with.csv {MAPS} --model exact {SD} --known depth,variance {noise}"
         ));
+        let stated = (!noise.is_empty()).then_some(0.5e-3);
+        assert_eq!(found.get("depth_noise_m").and_then(Value::as_f64), stated);
         found["gamma"].as_f64().unwrap()
     };
     // Some 0.3 N/mm: 0.15 N in a normal force with noise of 0.12 N, and little in the lateral one.

@@ -2,7 +2,7 @@
 
 use super::*;
 
-// Verifies: CLI-041, CLI-042, CLI-003, CLI-048, CLI-140, ROB-008.
+// Verifies: CLI-041, CLI-042, CLI-003, CLI-048, CLI-140, ROB-008, CLI-239.
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
     place().refuses("detect", |words| {

@@ -361,7 +361,7 @@ impl Bank {
         zeroed,
         sure: "float, optional" = "The posterior from which on there is an inclusion.",
         prior, own_prior_h1, own_depths_mm;
-        "dict" = "The JSON of palpate detect, in SI; inclusion (True, False or None: cannot be judged) and reasons, the words for causes.";
+        "dict" = "The JSON of palpate detect, in SI; inclusion (True, False or None: cannot be judged); reasons, the words for causes; and samples_left_out, of passes that are too short.";
         "A sample beyond the bank or not finite, or a name or a number that makes no sense."
     )]
     #[pyo3(signature = (positions_mm, forces_n, noise_sd_n=None, known=Names::of(&[]), zeroed=false, sure=0.95, prior=None, prior_h1=0.5,
@@ -394,7 +394,7 @@ impl Bank {
         };
         let found = py.detach(|| -> PyResult<_> {
             let reference = self.bank.reference();
-            let (passes, _) = question.passes(&record, reference);
+            let (passes, left_out) = question.passes(&record, reference);
             let along: Vec<&Record> = passes.iter().collect();
             let changes = self.changes_under(&record, &along)?;
             let sweep = |record| RobustSweep {
@@ -405,13 +405,14 @@ impl Bank {
             };
             let sweeps: Vec<_> = along.into_iter().map(sweep).collect();
             let found = question.locate(&self.bank, prior.as_deref(), &sweeps);
-            found.map_err(refused)
+            Ok((found.map_err(refused)?, left_out))
         });
-        let (answer, place) = found?;
+        let ((answer, place), left_out) = found?;
         let told = python(py, &answer.rows(Some((&self.bank, &place))))?;
         give_reasons(&told, &answer.causes)?;
         let decided = answer.decision.map(|found| found == Decision::Inclusion);
         told.set_item("inclusion", decided)?;
+        told.set_item("samples_left_out", left_out)?;
         Ok(told)
     }
 

@@ -153,7 +153,7 @@ pub fn statistic(
 #[doc = sections!(
     template: "array_like, shape (2, n)" = "F_1 - F_0, lateral and normal, N.",
     noise_sd_n;;
-    "A template without signal, or one that is not finite."
+    "A template that is not finite."
 )]
 #[pyclass(frozen, module = "palpate")]
 pub struct MatchedFilter {

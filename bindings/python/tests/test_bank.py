@@ -231,7 +231,11 @@ def test_each_sample_may_have_its_depth():
     whole = bank.locate(forces_n=record, noise_sd_n=0.05, unknown=["offset", "gain"], white=True, **path)
     assert whole["inclusion"] and whole["likeliest"]["position_mm"] == 2
     judged = bank.judge(forces_n=record, noise_sd_n=0.05, **path)
-    assert judged["inclusion"]
+    assert judged["inclusion"] and judged["samples_left_out"] == 0
+    # A third pass of a millimetre is too short, and said to be left out.
+    longer = {"positions_mm": np.append(path["positions_mm"], x[:10]), "depths_mm": np.append(path["depths_mm"], np.full(10, 2.0))}
+    last = noisy(truth.sweep(2, x[:10]))
+    assert bank.judge(forces_n=np.hstack([record, last]), noise_sd_n=0.05, **longer)["samples_left_out"] == 10
     watcher = palpate.Watcher(bank, noise_sd_n=0.05, unknown=["offset", "gain"])
     for sample in zip(path["positions_mm"], record[1], record[0], path["depths_mm"]):
         last = watcher.push(*sample)

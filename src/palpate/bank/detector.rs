@@ -97,7 +97,8 @@ impl BankDetector {
             let pairs = templates.chunks_exact(samples).zip(&gamma);
             for (bias, (template, gamma)) in bias.iter_mut().zip(pairs) {
                 if *gamma > 0.0 {
-                    *bias = f64::max(*bias, dot(template, deviation).abs() / gamma);
+                    let of_this = representable("bias", dot(template, deviation) / gamma)?;
+                    *bias = f64::max(*bias, of_this.abs());
                 }
             }
         }

@@ -47,7 +47,12 @@ pub fn explanation_figure(
             let mut panel = record_panel(record, answer, [sweep, channel]);
             panel.heading = match records.len() {
                 1 => format!("{} (N)", CHANNELS[channel]),
-                _ => format!("{}, sweep {} (N)", CHANNELS[channel], sweep + 1),
+                _ => format!(
+                    "{}, sweep {}{} (N)",
+                    CHANNELS[channel],
+                    sweep + 1,
+                    how_deep(record)
+                ),
             };
             panels.push(panel);
             panels.extend(left_panels(record, answer, [sweep, channel]));
@@ -103,6 +108,16 @@ pub fn answer_in_words(answer: &RobustAnswer) -> Vec<String> {
         }
     }
     caption
+}
+
+/// The depths of a record in words, if its samples have their own.
+fn how_deep(record: &Record) -> String {
+    let depths = record.depths().into_iter().flatten().copied();
+    let words = extremes(depths).map(|ends| {
+        let [low, high] = ends.map(|depth| trimmed(1e3 * depth, 1));
+        format!(", {low} to {high} mm deep")
+    });
+    words.unwrap_or_default()
 }
 
 /// Points of a record at its positions, mm.

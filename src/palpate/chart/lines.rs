@@ -230,8 +230,13 @@ fn draw_line(chart: &mut Context<'_>, line: &Line) -> DrawingResult<()> {
         chart.draw_series(LineSeries::new(outline, stroke(INK, 1.2)))?;
         return Ok(());
     }
-    if line.dot > 0 {
-        let dot = |at| Circle::new(at, line.dot * UNIT, filled);
+    // A curve of a single point would not be seen.
+    let radius = match line.points.len() {
+        1 if line.width > 0.0 => line.dot.max(4),
+        _ => line.dot,
+    };
+    if radius > 0 {
+        let dot = |at| Circle::new(at, radius * UNIT, filled);
         chart.draw_series(points.clone().map(dot))?;
     }
     if line.width > 0.0 && line.is_dashed {
@@ -264,6 +269,27 @@ pub fn round_range(values: impl Iterator<Item = f64>) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    // Verifies: REP-031.
+    #[test]
+    fn a_curve_of_one_point_is_a_dot() {
+        let curve = |points| {
+            chart(
+                &[Panel::new(
+                    "F (N)",
+                    [[0.0, 1.0]; 2],
+                    200,
+                    vec![Line::new(INK, points)],
+                )],
+                ["a", "b", "c"],
+            )
+        };
+        let dots = |points| curve(points).unwrap().matches("<circle").count();
+        assert_eq!(
+            [dots(vec![(0.5, 0.5)]), dots(vec![(0.5, 0.5), (1.0, 0.5)])],
+            [1, 0]
+        );
+    }
 
     // Verifies: REP-031.
     #[test]

@@ -189,7 +189,7 @@ impl Stated {
             .strip_suffix(']')
             .and_then(|name| name.rsplit_once('['))
         {
-            Some((name, unit)) => (name.trim(), Some(unit.trim().to_lowercase())),
+            Some((name, unit)) => (name.trim(), Some(unit.trim().to_owned())),
             None => (whole, None),
         };
         let factor = name.rsplit_once('*').and_then(|(name, factor)| {
@@ -295,21 +295,20 @@ fn unit((name, _): &Named) -> &'static str {
     name.rsplit('_').next().unwrap_or("")
 }
 
-/// The name in a unit.
+/// The name in a unit, whose case does not count, but that a meganewton is no millinewton.
 fn in_unit(names: &[Named], of: &str) -> Option<Named> {
-    let same = |name: &&Named| unit(name).eq_ignore_ascii_case(of);
+    let same = |name: &&Named| unit(name).eq_ignore_ascii_case(of) && of != "MN";
     names.iter().find(same).copied()
 }
 
 /// The parts of a field of the header with `_` between them, in small letters, and the name in the unit behind them, if there is one.
 fn taken_apart(field: &str, names: &[Named]) -> (String, Option<Named>) {
-    let lower = field.to_lowercase();
-    let parts = lower.split(|c: char| !c.is_alphanumeric());
+    let parts = field.split(|c: char| !c.is_alphanumeric());
     let mut parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
     let last = parts.last().filter(|_| parts.len() > 1);
     let named = last.and_then(|last| in_unit(names, last));
     parts.truncate(parts.len() - usize::from(named.is_some()));
-    (parts.join("_"), named)
+    (parts.join("_").to_lowercase(), named)
 }
 
 /// Where in a header a column is.
@@ -374,7 +373,7 @@ fn read(field: &str, names: &[Named], by: By) -> Option<Named> {
     if by == By::Name {
         return names
             .iter()
-            .find(|(name, _)| name.eq_ignore_ascii_case(field))
+            .find(|(name, _)| name.eq_ignore_ascii_case(field) && !field.ends_with("_MN"))
             .copied();
     }
     let (name, named) = taken_apart(field, names);
@@ -394,11 +393,23 @@ impl Stated {
     /// The column that was stated.
     fn find(&self, header: &[&str], names: &[Named]) -> Result<Found, String> {
         let place_of = |name: &str| {
-            let mut fields = header.iter();
-            fields.position(|field| field.eq_ignore_ascii_case(name))
+            let mut places = (0..header.len()).filter(|at| header[*at].eq_ignore_ascii_case(name));
+            match (places.next(), places.next()) {
+                (Some(first), Some(second)) => {
+                    let (first, second) = (first + 1, second + 1);
+                    let name = shortened(name);
+                    Err(format!(
+                        "columns {first} and {second} with the name {name:?}"
+                    ))
+                }
+                (place, _) => Ok(place),
+            }
         };
-        let by_whole = place_of(&self.whole);
-        let by_name = by_whole.or(place_of(&self.name));
+        let by_whole = place_of(&self.whole)?;
+        let by_name = match by_whole {
+            Some(place) => Some(place),
+            None => place_of(&self.name)?,
+        };
         let number = self
             .name
             .parse()
@@ -553,12 +564,33 @@ mod tests {
             ("normal=AI1", "line 1: column 3 has no unit in the header"),
             (
                 "normal=AI1[V]",
-                "line 1: column 3 in v, which must be in n or mn, in the header",
+                "line 1: column 3 in V, which must be in n or mn, in the header",
+            ),
+            (
+                "normal=AI1[MN]",
+                "line 1: column 3 in MN, which must be in n or mn, in the header",
             ),
         ] {
             let found = read(TEXT, layout).unwrap_err();
             assert!(found.starts_with(expected), "{layout}: {found}");
         }
+    }
+
+    // Verifies: MAP-045, MAP-046.
+    #[test]
+    fn what_may_mean_two_things_is_refused() {
+        let mega = "no column normal_force_n or normal_force_mn in the header";
+        let header = ["pos (mm),Load (MN)", "pos (mm),normal_force_MN"];
+        for header in header {
+            let found = read(&format!("{header}\n1,-3\n"), "position=1").unwrap_err();
+            assert!(found.contains(mega), "{header}: {found}");
+        }
+        assert!(Rows::parse("pos,Load\nmm,MN\n1,-3\n", COLUMNS, "").is_err());
+        let text = "pos (mm),Load,T,load\n1,-3,20,5\n";
+        let found = read(text, "normal=Load[N]").unwrap_err();
+        let twice = "line 1: columns 2 and 4 with the name \"Load\" in the header";
+        assert!(found.starts_with(twice), "{found}");
+        assert_eq!(read(text, "normal=4[N]"), Ok([1e-3, 5.0]));
     }
 
     // Verifies: MAP-047.

@@ -332,16 +332,25 @@ impl<'a, const N: usize> Header<'a, N> {
         if behind < rows.len() { behind } else { 0 }
     }
 
-    /// Whether a row has as many fields as the header, and of a column that counts none or NaN.
+    /// Whether a row has as many fields as the header, and in the columns that count numbers alone, of which one or more are missing.
     ///
     /// Implements: MAP-048.
     fn lacks(&self, row: &str) -> bool {
         let fields: Vec<&str> = split(row, self.separator).collect();
-        let is_missing = |found: &Found| {
-            let field = fields[found.place];
-            field.is_empty() || field.eq_ignore_ascii_case("nan")
+        if fields.len() != self.fields.len() {
+            return false;
+        }
+        let fields = self.found.iter().flatten().map(|found| fields[found.place]);
+        let is_missing = |field: &&str| {
+            ["", "nan", "#n/a"]
+                .iter()
+                .any(|none| field.eq_ignore_ascii_case(none))
         };
-        fields.len() == self.fields.len() && self.found.iter().flatten().any(is_missing)
+        let (missing, others): (Vec<_>, Vec<_>) = fields.partition(is_missing);
+        !missing.is_empty()
+            && others
+                .iter()
+                .all(|field| decimal(field, 0, &mut None).is_some())
     }
 
     /// The numbers of a row, in SI; the first decimal mark that is there sets that of the file.
@@ -422,16 +431,27 @@ fn decimal(field: &str, power: i32, mark: &mut Option<char>) -> Option<f64> {
     parse_scaled(&field.replacen(',', ".", 1), power)
 }
 
+/// What a spreadsheet writes where it has no number.
+const NO_NUMBER: [&str; 7] = [
+    "#N/A", "#DIV/0!", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!",
+];
+
+/// Whether a line, without the spaces around it, is blank or a comment.
+///
+/// Implements: MAP-032.
+pub(crate) fn is_comment(line: &str) -> bool {
+    let is_field = NO_NUMBER.iter().any(|error| line.starts_with(error));
+    line.is_empty() || line.starts_with('#') && !is_field
+}
+
 /// The lines of `text` that say something, with their numbers from 1: neither blank nor a
 /// comment. The header is the first; without any it is an empty line 1.
 ///
 /// Implements: MAP-032, TRC-001.
 pub fn header_and_rows(text: &str) -> ((usize, &str), impl Iterator<Item = (usize, &str)>) {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut lines = (1..).zip(text.lines()).filter(|(_, line)| {
-        let content = line.trim();
-        !content.is_empty() && !content.starts_with('#')
-    });
+    let is_said = |(_, line): &(usize, &str)| !is_comment(line.trim());
+    let mut lines = (1..).zip(text.lines()).filter(is_said);
     (lines.next().unwrap_or((1, "")), lines)
 }
 
@@ -518,6 +538,25 @@ mod tests {
             "samples with a missing number are not used: 3",
         ];
         assert_eq!(read_all.notes, notes);
+        // What is no number lacks none: a row of units that are not known, or text.
+        for row in [",gf", "1,none", "none,"] {
+            let text = format!("t_s,force_n\n{row}\n1,2\n");
+            let refused = read(&text, true).err().expect(row).to_string();
+            assert!(refused.starts_with("line 2: "), "{refused}");
+        }
+        // A spreadsheet's "not available" is missing, and its other errors are no comments.
+        let spreadsheet = "t_s,force_n\n# a pass\n#N/A,#N/A\n1,#n/a\n2,5\n";
+        let (read_all, _) = read(spreadsheet, true).unwrap();
+        assert_eq!(read_all.rows, [(5, [2.0, 5.0])]);
+        assert_eq!(
+            read_all.notes,
+            ["samples with a missing number are not used: 2"]
+        );
+        for error in ["#DIV/0!", "#NAME?", "#NULL!", "#NUM!", "#REF!", "#VALUE!"] {
+            let text = format!("t_s,force_n\n1,2\n{error},3\n");
+            let refused = read(&text, true).err().expect(error).to_string();
+            assert!(refused.starts_with("line 3: t_s"), "{refused}");
+        }
         // A table of other numbers is refused.
         let whole = Rows::parse(text, COLUMNS, "").err().unwrap().to_string();
         let optional = read(text, false).err().unwrap().to_string();

@@ -9,8 +9,7 @@ const STUCK: f64 = 0.95;
 /// So many glitches are replaced, or this share of the samples; more refuse the record.
 pub const MOST_GLITCHES: usize = 2;
 const MOST_GLITCHES_SHARE: f64 = 0.05;
-/// A record whose noise is to be estimated has at least so many samples, and one in stated noise so many.
-pub const LEAST_SAMPLES: usize = 20;
+/// The fewest samples of a record in stated noise.
 pub const LEAST_SAMPLES_IN_NOISE: usize = 8;
 
 /// Whether one end of the range of `channel` occurs too often: the sensor was at its end.

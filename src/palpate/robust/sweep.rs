@@ -12,7 +12,7 @@ use crate::force_map::{ForceMap, ForceTable};
 use crate::refusal::Refusal;
 use crate::trace::contact::{RADIUS, in_air, is_narrow, level, radius};
 use crate::trace::design::{difference, slope};
-use crate::trace::{Cause, Record};
+use crate::trace::{Cause, LEAST_SAMPLES, Record};
 
 /// The force at a sample is at most so many times that at the mean depth.
 const MOST_SHARE: f64 = 10.0;
@@ -78,7 +78,7 @@ impl RobustQuestion<'_> {
     fn least_samples(&self) -> usize {
         match self.noise_sd {
             Some(_) => gates::LEAST_SAMPLES_IN_NOISE,
-            None => gates::LEAST_SAMPLES,
+            None => LEAST_SAMPLES,
         }
     }
 }

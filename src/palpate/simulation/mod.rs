@@ -82,9 +82,9 @@ impl Simulation<'_> {
     /// Record `number`, which does not depend on the others.
     ///
     /// # Errors
-    /// A gel without lateral forces; a place outside its depths or positions, also where a hand goes.
+    /// A gel without lateral forces; a place outside its depths or positions, also where a hand goes; a depth or force beyond all numbers.
     ///
-    /// Implements: SIM-001, SIM-002, SIM-003.
+    /// Implements: SIM-001, SIM-002, SIM-003, SIM-005.
     pub fn record(&self, number: u64) -> Result<SimulatedRecord, Refusal> {
         let generator = Generator::new(self.seed, number);
         let places = self.motion.places(self.gel, self.path, &generator)?;
@@ -108,11 +108,17 @@ impl Simulation<'_> {
         }
         let noise = |index| self.sensor.depth_sd * generator.normal(DEPTH, index);
         let depths = (0..).zip(&places).map(|(at, [_, depth])| depth + noise(at));
+        let depths: Vec<f64> = depths.collect();
         let measured = |forces, channel| self.sensor.measured(forces, channel, &times, &generator);
+        let forces = Force::new(measured(lateral, LATERAL), measured(normal, NORMAL));
+        let mut values = depths.iter().chain(&forces.lateral).chain(&forces.normal);
+        let found = "a measured depth or force is no finite number";
+        Refusal::state(found, "give smaller errors of the sensor")
+            .when(!values.all(|value| value.is_finite()))?;
         Ok(SimulatedRecord {
             positions: places.iter().map(|place| place[0]).collect(),
-            depths: depths.collect(),
-            forces: Force::new(measured(lateral, LATERAL), measured(normal, NORMAL)),
+            depths,
+            forces,
             times,
         })
     }

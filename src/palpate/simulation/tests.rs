@@ -320,6 +320,26 @@ fn tremor_has_the_size_and_the_frequency_that_are_asked() {
     assert_ne!(shaking.record(2).unwrap().depths, found.depths);
 }
 
+// Verifies: SIM-005.
+#[test]
+fn a_sensor_beyond_all_numbers_is_refused() {
+    let gel = spring(400.0);
+    let path = Path::passes(&[2e-3], [-9e-3, 9e-3], 9e-3, 10.0).unwrap();
+    type Set = fn(&mut Sensor);
+    // A force over so small a step is infinite.
+    let wrong: [Set; 3] = [
+        |sensor| sensor.resolution = 1e-310,
+        |sensor| sensor.depth_sd = f64::MAX,
+        |sensor| (sensor.offset_sd, sensor.drift_sd) = (f64::MAX, f64::MAX),
+    ];
+    for set in wrong {
+        let mut beyond = simulation(&gel, &path);
+        set(&mut beyond.sensor);
+        let error = beyond.record(1).unwrap_err().to_string();
+        assert!(error.contains("no finite number"), "{error}");
+    }
+}
+
 // Verifies: SIM-002, SIM-003.
 #[test]
 fn a_sensor_has_the_noise_offset_drift_and_steps_that_are_asked() {

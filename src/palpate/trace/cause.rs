@@ -46,7 +46,7 @@ impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Cause::Sign => "the forces have the other sign than those of the maps: reverse it, for a normal force that pushes the probe up is positive",
-            Cause::ForceUnit => "the forces are in another unit than was said, such as mN: say which, or give them in N",
+            Cause::ForceUnit => "the forces are in another unit than was said, such as mN, or the depth is, such as m: say which, or give N and mm",
             Cause::Level => "the forces are too large for the maps' gel at this depth: take maps of this gel, depth and probe",
             Cause::Misfit => "the noise is not as it was stated, or the forces are not those of the maps: state the noise of a sample in N, take less as known, or take other maps",
             Cause::Coloured => "the noise of neighbouring samples is correlated, and the exact model needs white noise: use the robust model",

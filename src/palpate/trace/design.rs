@@ -1,6 +1,6 @@
 //! What a record may hold beside noise, sample by sample: the signal of the inclusion, and nuisances of unknown amplitude.
 
-use super::question::{Question, Unknown};
+use super::question::{LEAST_SAMPLES, Question, Unknown};
 use super::{Record, refused};
 use crate::decimal::mm;
 use crate::detect::DetectError;
@@ -8,7 +8,7 @@ use crate::detect::nuisance::{DEPENDENT, Nuisances, Rank, SubspaceDetector};
 use crate::force::Force;
 use crate::force_map::{ForceTable, SAME_POSITION, shallowest};
 use crate::refusal::Refusal;
-use crate::stats::error::check_positive;
+use crate::stats::error::{check_positive, representable};
 
 /// The parts of a record, all in the same unit and over the same samples: of each part the lateral samples, if the record has any, and
 /// then the normal ones.
@@ -35,7 +35,11 @@ pub struct Design {
 impl Design {
     /// The parts of `record` but for the template, by the map `without` inclusion, N.
     ///
-    /// Implements: TRC-064.
+    /// # Errors
+    /// As [`Record::expected`]; noise that is neither stated nor unknown, or cannot be estimated from so few samples; errors of the depths
+    /// in noise that is not stated, or by a map of one depth.
+    ///
+    /// Implements: TRC-064, TRC-068.
     pub fn new(
         question: &Question<'_>,
         without: &ForceTable,
@@ -43,6 +47,7 @@ impl Design {
     ) -> Result<Design, Refusal> {
         let reference = expected(record, without, question.depth)?;
         let samples = record.positions().len();
+        check_noise(question, record)?;
         let slope = || slope(record, without, question.depth, expected);
         let found = "the errors of the depths cannot be told from noise that is estimated";
         let is_mixed = record.depth_sd() > 0.0 && question.noise.sd.is_none();
@@ -131,11 +136,16 @@ impl Design {
 
     /// What the depth may add to T at most.
     ///
+    /// # Errors
+    /// Overflow.
+    ///
     /// Implements: TRC-064.
-    pub fn bias(&self, detector: &SubspaceDetector<'_>) -> f64 {
-        let errors = self.depth_errors.iter();
-        let along = errors.map(|error| detector.along(error).abs());
-        along.fold(0.0, f64::max)
+    pub fn bias(&self, detector: &SubspaceDetector<'_>) -> Result<f64, DetectError> {
+        let mut errors = self.depth_errors.iter();
+        errors.try_fold(0.0, |most: f64, error| {
+            let bias = representable("bias", detector.along(error))?;
+            Ok(most.max(bias.abs()))
+        })
     }
 
     /// The channels of a part; no lateral samples where the record has none.
@@ -191,6 +201,23 @@ impl Design {
         check_positive("noise_sd_normal_n", sd.normal)?;
         Ok(sd)
     }
+}
+
+/// Refuses a record whose noise is neither stated nor can be estimated.
+///
+/// Implements: TRC-068.
+fn check_noise(question: &Question<'_>, record: &Record) -> Result<(), Refusal> {
+    if question.noise.sd.is_some() {
+        return Ok(());
+    }
+    let found = "the noise is not stated, and its variance is taken as known";
+    let remedy = "state the noise (--noise-sd-n, or --noise FILE), or take the variance as unknown";
+    Refusal::state(found, remedy).when(!question.is_unknown(Unknown::Variance))?;
+    let samples = record.positions().len();
+    let remedy = format!("give at least {LEAST_SAMPLES}, or state the noise (--noise-sd-n)");
+    let found = format!("{samples} samples, whose noise is not stated");
+    let few = Refusal::state(found, remedy).in_file(record.file());
+    few.when(!record.forces().lateral.is_empty() && samples < LEAST_SAMPLES)
 }
 
 /// The lateral samples, if there are any, and then the normal ones.

@@ -118,7 +118,7 @@ impl Question<'_> {
             let nuisances = Nuisances::new(&mut signals, template.len())?;
             let detector = SubspaceDetector::new(nuisances, &mut template)?;
             let statistic = detector.statistic(&mut white.residual.clone())?;
-            let test = statistic.test(self.noise_level(), white.bias(&detector))?;
+            let test = statistic.test(self.noise_level(), white.bias(&detector)?)?;
             let threshold = self.threshold(&test)?;
             let (decision, causes) = self.verdict(threshold.decide(test.t), &fit);
             Ok(Judgement {

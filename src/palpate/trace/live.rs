@@ -3,7 +3,7 @@
 use serde_json::{Map, Value};
 
 use super::{COLUMNS, REQUIRED};
-use crate::csv::{Column, Layout, Rows};
+use crate::csv::{Column, Layout, Rows, is_comment};
 use crate::refusal::Refusal;
 
 /// Those of a trace over positions.
@@ -86,11 +86,12 @@ impl LiveSamples {
             .trim_start_matches('\u{feff}')
             .trim_matches([' ', '\r', '\n']);
         let content = text.trim();
-        if content.is_empty() || content.starts_with('#') || self.line <= self.skipped {
+        if is_comment(content) || self.line <= self.skipped {
             return Ok(None);
         }
         let read = match self.header.clone() {
-            None if content.starts_with('{') => {
+            // After an object, all lines are.
+            None if content.starts_with('{') || self.first.is_some() => {
                 object(text).and_then(|[header, row]| Ok(Some(self.row(&header, &row)?.0)))
             }
             None => {
@@ -293,6 +294,18 @@ mod tests {
                 "-:1: normal_force_n = \"[...]\", but must be",
             ),
             (&["{"], "-:1: "),
+            (
+                &[
+                    r#"{"position_mm": 1, "normal_force_n": 2}"#,
+                    "position_mm,normal_force_n",
+                    "1,2",
+                ],
+                "-:2: ",
+            ),
+            (
+                &["position_mm,normal_force_n", "#VALUE!,2"],
+                "-:2: position_mm = \"#VALUE!\", but must be",
+            ),
             (&["{}", ""], "-:1: no column position_mm"),
         ] {
             let error = read(lines).unwrap_err();

@@ -71,7 +71,7 @@ pub use fit::{Fit, MISFIT_RATE};
 pub use judge::Judgement;
 pub(crate) use judge::{MUCH_LIKELIER, is_none};
 pub use live::{LiveSample, LiveSamples};
-pub use question::{Correlation, Criterion, Noise, Question, Unknown, in_words};
+pub use question::{Correlation, Criterion, LEAST_SAMPLES, Noise, Question, Unknown, in_words};
 
 use crate::csv::{Column, Layout, Rows};
 use crate::decimal::mm;

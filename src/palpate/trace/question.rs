@@ -45,6 +45,11 @@ pub struct Question<'a> {
     pub prior_h1: f64,
 }
 
+/// The fewest samples of a record whose noise is estimated.
+///
+/// Implements: TRC-068, ROB-003.
+pub const LEAST_SAMPLES: usize = 20;
+
 /// What is known of the noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Noise {

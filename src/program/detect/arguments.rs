@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use crate::error::refuse;
 use crate::layout::LayoutArguments;
 use crate::numbers::{length_or_zero, newtons, position, probability, sure_probability, velocity};
-use crate::output::note;
+use crate::output::{note, svg_file};
 use crate::{CliError, Format};
 use palpate::csv::Layout;
 use palpate::force::Force;
@@ -127,7 +127,7 @@ pub(super) struct MapsOrBank {
     pub seed: u64,
     /// Writes a figure as SVG: the record beside what explains it without and with an inclusion. With --model exact and a bank: the
     /// inclusion's position
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE.svg", value_parser = svg_file())]
     pub figure: Option<PathBuf>,
 }
 

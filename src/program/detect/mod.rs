@@ -203,9 +203,6 @@ fn question<'a>(
 ) -> Result<Question<'a>, CliError> {
     let unknown = &known.unknown;
     let depth_tolerance = depth_tolerance(arguments);
-    if noise.sd.is_none() && !unknown.contains(&Unknown::Variance) {
-        refuse!("--known variance needs --noise-sd-n, or --noise FILE to estimate it from");
-    }
     let has_one_depth = reference.depths().len() == 1;
     if depth_tolerance > 0.0 && has_one_depth && !unknown.contains(&Unknown::Depth) {
         let text = "the map has a single depth: the depth tolerance has no effect";
@@ -283,6 +280,16 @@ fn asked(
     ] {
         file.iter().for_each(|file| rows.value(key, path(file)));
     }
+    let sweep = &arguments.sweep;
+    for (key, number) in [
+        ("depth_noise_m", sweep.depth_noise),
+        ("velocity_m_s", sweep.velocity),
+        ("start_m", sweep.start),
+    ] {
+        number.iter().for_each(|number| rows.value(key, *number));
+    }
+    let columns = sweep.layout.columns.iter();
+    columns.for_each(|columns| rows.value("columns", &**columns));
     rows.value("noise", &*arguments.noise.noise);
     rows.value("prior_h1", arguments.criterion.prior_h1);
     rows
@@ -302,6 +309,9 @@ fn exactly_asked(arguments: &DetectArguments, known: &Known, depth: f64, record:
         ("max_false_alarm", criterion.max_false_alarm),
     ] {
         rate.into_iter().for_each(|rate| rows.value(key, rate));
+    }
+    if arguments.hypotheses.simulations.is_some() {
+        rows.value("seed", arguments.hypotheses.seed);
     }
     rows
 }

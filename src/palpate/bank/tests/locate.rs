@@ -59,7 +59,7 @@ fn a_record_of_one_place_is_not_judged() {
     let positions: Vec<f64> = wide.positions().iter().map(|x| 1e-3 * x).collect();
     let narrow = Record::new("t", &positions, wide.forces()).unwrap();
     let mut search = by_map(&bank);
-    search.question.unknown = &[];
+    search.question.unknown = &[Unknown::Variance];
     search.question.noise.sd = None;
     let [wide, narrow] = [wide, narrow].map(|record| search.locate(&record).unwrap());
     assert_eq!(

@@ -223,7 +223,7 @@ fn what_is_unknown_is_fitted_by_least_squares() {
 fn what_is_unknown_twice_counts_once() {
     let flat = |signal: f64| {
         let bump = move |x: f64| signal / (1.0 + 1e6 * x * x);
-        let laterals: Vec<f64> = (-8..=8).map(|x| 1e-3 * f64::from(x)).collect();
+        let laterals: Vec<f64> = (-16..=16).map(|x| 5e-4 * f64::from(x)).collect();
         table_of(&[4e-3], &laterals, |_, x| {
             [60.0 * x * bump(x), 1.5 + bump(x)]
         })
@@ -235,18 +235,19 @@ fn what_is_unknown_twice_counts_once() {
     });
     for sd in [Some(STATED), None] {
         let judged = |unknown: &[Unknown]| {
-            let noise = noise(sd, Correlation::None);
+            let level = sd.is_none().then_some(Unknown::Variance);
+            let unknown: Vec<_> = unknown.iter().copied().chain(level).collect();
             let question = Question {
-                unknown,
-                noise,
+                unknown: &unknown,
+                noise: noise(sd, Correlation::None),
                 ..question(4e-3)
             };
             question.judge(hypotheses, &record).unwrap()
         };
         let once = judged(&[Unknown::Offset]);
         let twice = judged(&[Unknown::Offset, Unknown::Gain]);
-        // 17 samples of two forces, less two offsets and the inclusion.
-        assert_eq!([once.fit.degrees, twice.fit.degrees], [31.0; 2]);
+        // 33 samples of two forces, less two offsets and the inclusion.
+        assert_eq!([once.fit.degrees, twice.fit.degrees], [63.0; 2]);
         for [once, twice] in [
             [once.fit.chi_square, twice.fit.chi_square],
             [&once, &twice].map(|judged| judged.fit.noise_sd.normal.unwrap()),
@@ -276,9 +277,14 @@ fn a_lateral_force_that_is_not_there_counts_nowhere() {
     });
     let one = both.clone().normal_alone();
     let maps_of_one = [&without, &with].map(normal_alone);
-    let judged = |record: &Record, [without, with]: [&ForceTable; 2], noise| {
+    let judged = |record: &Record, [without, with]: [&ForceTable; 2], noise: Noise| {
+        let known_level = &[Unknown::Offset, Unknown::Drift, Unknown::Gain][..];
         let question = Question {
-            unknown: &[Unknown::Offset, Unknown::Drift, Unknown::Gain],
+            unknown: if noise.sd.is_none() {
+                USUAL
+            } else {
+                known_level
+            },
             noise,
             ..question(4e-3)
         };
@@ -376,6 +382,72 @@ fn asked(record: &Record, unknown: &[Unknown], sd: Option<f64>) -> Judgement {
     };
     let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
     question.judge(hypotheses, record).unwrap()
+}
+
+/// A sweep of so many samples at 4 mm over the gel without an inclusion, in noise of 0.1 N.
+fn short(samples: u32, stream: u64) -> Record {
+    let step = 16e-3 / f64::from(samples - 1);
+    let positions: Vec<f64> = (0..samples).map(|i| step * f64::from(i) - 8e-3).collect();
+    let exact = gel(0.0).sweep(4e-3, &positions).unwrap();
+    let generator = Generator::new(20_261_128, stream);
+    record(positions, |i| {
+        let noise = |channel| 0.1 * generator.normal(channel, i as u64);
+        [exact.lateral[i] + noise(0), exact.normal[i] + noise(1)]
+    })
+}
+
+// Verifies: TRC-068, CLI-041.
+#[test]
+fn too_few_samples_tell_no_noise() {
+    let (without, with) = (gel(0.0), gel(0.5));
+    let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+    let judged = |record: &Record, unknown, sd: Option<f64>| {
+        let question = Question {
+            unknown,
+            noise: noise(sd.map(|sd| Force::new(sd, sd)), Correlation::None),
+            ..question(4e-3)
+        };
+        question.judge(hypotheses, record).map(|found| found.test)
+    };
+    let few = short(19, 1);
+    let found =
+        "t.csv: 19 samples, whose noise is not stated; give at least 20, or state the noise[..]";
+    assert_error(judged(&few, USUAL, None), found);
+    assert!(judged(&few, USUAL, Some(0.1)).is_ok());
+    // One channel has Student's law, however few the samples are.
+    assert!(judged(&few.normal_alone(), USUAL, None).is_ok());
+    let found = "the noise is not stated, and its variance is taken as known; state the noise[..]";
+    assert_error(judged(&short(20, 1), &[Unknown::Offset], None), found);
+    assert!(judged(&short(20, 1), USUAL, None).is_ok());
+}
+
+// Verifies: TRC-068.
+#[test]
+fn the_estimate_of_two_noises_costs_at_most_the_false_alarms_that_are_said() {
+    let (without, with) = (gel(0.0), gel(0.5));
+    let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+    let alarms = |samples| {
+        let question = Question {
+            unknown: USUAL,
+            noise: noise(None, Correlation::None),
+            criterion: Criterion::NeymanPearsonFalseAlarm {
+                max_false_alarm: 0.01,
+            },
+            ..question(4e-3)
+        };
+        let alarm = |stream: &u64| {
+            let found = question
+                .judge(hypotheses, &short(samples, *stream))
+                .unwrap();
+            found.threshold.decide(found.test.t) == Decision::Inclusion
+        };
+        (0..20_000).filter(alarm).count()
+    };
+    // Of 20,000: so many times the stated 200 at most, and not much fewer.
+    for (samples, times) in [(20, 1.7), (41, 1.3)] {
+        let alarms = alarms(samples) as f64 / 200.0;
+        assert!((0.85..times).contains(&alarms), "{samples}: {alarms}");
+    }
 }
 
 // Verifies: TRC-016, TRC-075, CLI-143.

@@ -356,6 +356,7 @@ fn errors_of_the_depths_are_noise_of_both_channels() {
     let record = path(0.2, |_| 0.0).with_depth_sd(1e-4).unwrap();
     let maps = [0.0, 0.2].map(judge::gel);
     let estimated = Question {
+        unknown: &[Unknown::Variance],
         noise: Noise {
             sd: None,
             correlation: Correlation::None,

@@ -44,7 +44,7 @@ const PATHS: [(&str, Shape); 4] = [
 /// γ of an inclusion along each path, for each of [`UNKNOWN`].
 type Gammas = [[f64; UNKNOWN.len()]; PATHS.len()];
 
-/// The figure, for the inclusion that is the hardest to find, if the maps have rows from the surface on.
+/// The figure, for the inclusion that is the hardest to find, if the maps have rows from the surface on and more than one position.
 ///
 /// Implements: REP-036.
 pub fn figure(run: &Run, found: &Findings) -> Option<Plan> {
@@ -59,7 +59,9 @@ pub fn figure(run: &Run, found: &Findings) -> Option<Plan> {
 fn gammas(run: &Run, map: &ForceMap, found: &Findings) -> Option<Gammas> {
     let (without, depth) = (run.reference.table(), found.probe_depth_m);
     let laterals = without.laterals();
-    let (first, last) = (laterals[0], laterals[laterals.len() - 1]);
+    let [first, .., last] = laterals else {
+        return None;
+    };
     let noise_sd = Force::new(run.settings.noise_sd_n, run.settings.noise_sd_n);
     let mut gammas = Gammas::default();
     for ((_, shape), row) in PATHS.iter().zip(&mut gammas) {
