@@ -128,11 +128,11 @@ fn strain_and_friction_take_the_place_of_the_files() {
     }
 }
 
-// Verifies: CLI-013.
+// Verifies: CLI-013, FEM-086.
 #[test]
 fn certify_adds_bands_and_changes_no_force() {
     let here = Place::new("certify");
-    let arguments = "solve --phantom 2.6 --depths-mm 1,3 --laterals-mm 0,4 --mesh-mm 2";
+    let arguments = "solve --phantom 2.6 --depths-mm 1,3 --laterals-mm 0,4";
     let solve = |rest: &str| here.succeed(&format!("{arguments} {rest}"));
     let map = |rest: &str| ForceMap::from_json(&solve(rest), "standard output").unwrap();
     let (plain, certified) = (map("--format json"), map("--format json --certify"));
@@ -145,6 +145,9 @@ fn certify_adds_bands_and_changes_no_force() {
         format!("normal forces within {normal:.1e} N, lateral forces within {lateral:.1e} N");
     assert!(solve("--certify").contains(&said), "{said}");
     assert!(!solve("").contains("discretization"));
+    let refused = here.refused(&format!("{arguments} --mesh-mm 2 --certify"));
+    let remedy = "too much alike to tell how far a force is off; give a smaller mesh size";
+    assert!(refused.contains(remedy), "{refused}");
 }
 
 // Verifies: DET-113.
@@ -339,7 +342,8 @@ fn negative_laterals_of_an_asymmetric_phantom_are_solved_and_not_mirrored() {
 fn an_asymmetric_phantom_has_bands_and_a_file_for_paraview() {
     let here = Place::new("asymmetric-vtu");
     here.write("own.toml", ASYMMETRIC);
-    let arguments = "solve --phantom own.toml --depths-mm 2 --laterals-mm=-4 --mesh-mm 1.5 --certify --vtu own.vtu";
+    let arguments =
+        "solve --phantom own.toml --depths-mm 2 --laterals-mm=-4 --certify --vtu own.vtu";
     let table = here.succeed(arguments);
     assert!(table.contains("discretization, from meshes of"), "{table}");
     let vtu = here.read("own.vtu");

@@ -56,7 +56,7 @@ pub struct BankArguments {
     /// Contact law
     #[arg(long, value_parser = contact(), default_value = Contact::default().name())]
     contact: Contact,
-    /// Mesh size in mm; all element sizes scale with it [default: 0.65]
+    /// Mesh size in mm; up to 0.5 all element sizes scale with it, above not all [default: 0.65]
     #[arg(long = "mesh-mm", value_parser = length, value_name = "H")]
     mesh_size: Option<f64>,
     /// Output file, which must not exist; FILE.part keeps finished maps, so that an aborted run can continue

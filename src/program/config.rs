@@ -50,7 +50,7 @@ pub struct Config {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct MeshConfig {
-    /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them.
+    /// Mesh size, mm: 0.5 gives the element sizes of spec/fem.md, another scales them as that states.
     #[serde(deserialize_with = "positive")]
     pub size_mm: f64,
     /// Contact law.

@@ -33,7 +33,7 @@ pub struct SolveArguments {
     /// Contact law
     #[arg(long, value_parser = contact(), default_value = Contact::default().name())]
     contact: Contact,
-    /// Mesh size in mm; all element sizes scale with it [default: 0.5]
+    /// Mesh size in mm; up to 0.5 all element sizes scale with it, above not all [default: 0.5]
     #[arg(long = "mesh-mm", value_parser = length, value_name = "H")]
     mesh_size: Option<f64>,
     /// Also solves on two coarser meshes and states a discretisation error band for each force

@@ -306,7 +306,7 @@ impl Phantom {
         depths_mm: "array_like, shape (m,)" = "Depths of the probe, increasing, mm.",
         laterals_mm: "array_like, shape (n,)" = "Lateral positions, increasing, mm.",
         mesh_mm, contact, progress,
-        certify: "bool, optional" = "Whether two coarser meshes are solved too, for the error bands of the certificate's discretization.";
+        certify: "bool, optional" = "Whether two coarser meshes are solved too, for the error bands of the certificate's discretization; refused for a mesh that is too coarse for them.";
         "ForceMap" = "The forces, N, with their certificate.";
         "As solve; an axis that does not increase."
     )]
