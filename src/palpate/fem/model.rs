@@ -15,7 +15,7 @@ use crate::force_map::{
     Certificate, ForceMap, ForceTable, Matrix, SAME_POSITION, SmallestDet, Source, check_axes,
     increasing,
 };
-use crate::phantom::{Phantom, Strain};
+use crate::phantom::{Geometry, Phantom, Strain};
 use crate::refusal::Refusal;
 
 /// A phantom, meshed and factorised.
@@ -73,8 +73,9 @@ pub enum State {
 
 /// Deepest step between two poses of which one starts the other, over the probe's radius.
 const DEPTH_STEP: f64 = 0.1;
-/// Contact points under the probe with which a force is within 8 % of that on a fine mesh.
+/// Contact points under the probe with which a force is within 8 % of that on a fine mesh, in the plane and of a sphere.
 const LEAST_POINTS: usize = 6;
+const LEAST_POINTS_OF_SPHERE: usize = 12;
 /// Depth over the probe's radius down to which fewer points do: the force is small, and so is its error.
 const LIGHT: f64 = 0.02;
 /// How often a step that does not converge is halved.
@@ -170,7 +171,11 @@ impl Model {
         let stands = self.phantom.check_pose(pose.depth, pose.lateral);
         stands.map_err(|refusal| FemError::Pose(refusal.into()))?;
         let points = self.surface.reach(&ContactState::untouched(0), pose).len();
-        if points >= LEAST_POINTS || pose.depth <= LIGHT * self.phantom.probe().radius {
+        let least = match self.phantom.geometry() {
+            Geometry::Plane => LEAST_POINTS,
+            Geometry::Axisymmetric => LEAST_POINTS_OF_SPHERE,
+        };
+        if points >= least || pose.depth <= LIGHT * self.phantom.probe().radius {
             return Ok(());
         }
         let [depth, lateral] = [pose.depth, pose.lateral].map(mm);

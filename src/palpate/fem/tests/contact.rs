@@ -1,6 +1,7 @@
 use crate::fem::field::Checker;
 use crate::fem::{Contact, ContactState, FemError, MESH_SIZE, Model, Pose, PoseSolution};
 use crate::force::Force;
+use crate::phantom::{Geometry, Phantom};
 use palpate_asserts::assert_near;
 
 use super::{builtin, off_centre, pose};
@@ -44,6 +45,29 @@ fn a_probe_on_too_few_contact_points_is_refused() {
     // R/50, and just beyond it with 2.6 mm of the surface below the chord.
     assert!(small.solve(light).is_ok());
     assert!(paper.solve(pose(0.1301e-3, 0.0)).is_ok());
+}
+
+// Verifies: FEM-085.
+#[test]
+fn a_sphere_needs_twice_as_many_contact_points_as_a_cylinder() {
+    // The whole chord, 1.83 mm, lies on elements of 0.53 to 0.64 mm.
+    let plane = builtin("none").changed(|parts| {
+        parts.layers.remove(0);
+        parts.well.width = 40e-3;
+        (parts.probe.radius, parts.probe.length) = (1e-3, 2e-3);
+    });
+    let plane = plane.unwrap();
+    let sphere = plane.changed(|parts| parts.geometry = Geometry::Axisymmetric);
+    let deep = pose(0.6e-3, 0.0);
+    let model = |phantom: &Phantom, size| Model::new(phantom, size, Contact::default()).unwrap();
+    assert!(model(&plane, 1.6e-3).solve(deep).is_ok());
+    let sphere = sphere.unwrap();
+    let said = model(&sphere, 1.6e-3).solve(deep).unwrap_err().to_string();
+    assert!(said.contains("contact points under the probe"), "{said}");
+    // The bound of the requirement.
+    let [coarse, fine] =
+        [0.7e-3, 0.25e-3].map(|size| model(&sphere, size).solve(deep).unwrap().force.normal);
+    assert!((coarse / fine - 1.0).abs() < 0.08, "{coarse} {fine}");
 }
 
 // Verifies: FEM-009.
