@@ -23,8 +23,8 @@ pub struct FieldCheck {
     pub residual: f64,
     /// Surface force plus reaction of floor and walls, the larger component's magnitude, N.
     pub imbalance: f64,
-    /// Smallest det(I + ∇u) over the sampling points that are 1 mm and more from sharp corners: 1 undeformed, 0 where the small-strain model
-    /// has squeezed the gel to nothing.
+    /// Smallest det(I + ∇u) over the elements that are not near to a sharp corner (in the paper's gel within 1 mm): 1 undeformed, 0 where
+    /// the small-strain model has squeezed the gel to nothing.
     pub min_det: f64,
 }
 

@@ -5,7 +5,8 @@ use core::f64::consts::FRAC_PI_2;
 use super::triangle::Point;
 use crate::phantom::{Outline, Phantom, Strain, Support, edges, point_to_segment};
 
-/// The mesh size, m, at which the sizes below hold as they stand; any other scales them all.
+/// The mesh size, m, at which the sizes below hold as they stand; a smaller one scales them all, a larger one those that
+/// need not resolve a thin layer, a narrow gap or a bend.
 pub const MESH_SIZE: f64 = 0.5e-3;
 /// Size at the surface, m, and its growth with depth.
 const SURFACE: [f64; 2] = [0.20e-3, 0.16];
@@ -25,8 +26,12 @@ const STRIP_WIDTH: f64 = 4e-3;
 const ROWS: [f64; 2] = [2.0, 0.16];
 /// Growth rates follow the mesh size up to this multiple of the nominal one.
 const STEEPEST: f64 = 2.0;
-/// Strain is not judged nearer to a sharp corner than this, m.
+/// Strain is not judged nearer to a sharp corner than 1 mm in a gel of this width and height, m, which are the paper's, and
+/// in another in proportion to the smaller of its own.
 const SINGULAR: f64 = 1e-3;
+const SINGULAR_IN: [f64; 2] = [34e-3, 15.5e-3];
+/// The cosine of the turn from one edge of a polygon to the next above which the corner is sharp: 30°.
+const SHARP: f64 = 0.866_025_403_784_438_6;
 /// Size over the width of the gap between two edges.
 const GAP: f64 = 0.5;
 /// Nodes of real meshes over those of equilateral triangles of the wanted size, as found on the paper's phantoms.
@@ -45,6 +50,9 @@ pub struct SizeField {
     /// Points with the size at them and its growth.
     corners: Vec<(Point, [f64; 2])>,
     outlines: Vec<Outline>,
+    /// Corners with a singular strain, and how near to them it is not judged, m.
+    sharp: Vec<Point>,
+    singular: f64,
 }
 
 impl SizeField {
@@ -55,17 +63,20 @@ impl SizeField {
         let outlines: Vec<Outline> = phantom.inclusions().iter().map(|i| i.outline()).collect();
         // A coarse mesh must follow a bend too.
         let bend = BEND * (MESH_SIZE / size).min(1.0);
-        let mut corners = Vec::new();
+        let (mut corners, mut sharp) = (Vec::new(), Vec::new());
         // Where the gel may turn inside out, so fine a mesh of the singular strain in a corner would.
         if phantom.well().walls == Support::Fixed && phantom.strain() == Strain::Small {
             for &y in &levels[..levels.len() - 1] {
-                corners.extend([-half_width, half_width].map(|x| (Point::new(x, y), WALL_CORNER)));
+                let ends = [-half_width, half_width].map(|x| Point::new(x, y));
+                corners.extend(ends.map(|end| (end, WALL_CORNER)));
+                sharp.extend(ends);
             }
         }
         for outline in &outlines {
             match outline {
                 Outline::Polygon(points) => {
                     corners.extend(points.iter().map(|&p| (p.into(), POLYGON_CORNER)));
+                    sharp.extend(sharp_corners(points));
                 }
                 Outline::Ellipse(ellipse) => corners.extend((0..4).map(|k| {
                     let [along, across] = [k, k + 1].map(|k| ellipse.radii[k % 2]);
@@ -74,12 +85,16 @@ impl SizeField {
                 })),
             }
         }
+        let of_gel = [phantom.well().width, phantom.height()];
+        let [wide, high] = [0, 1].map(|k| of_gel[k] / SINGULAR_IN[k]);
         SizeField {
             scale: size / MESH_SIZE,
             half_width,
             levels,
             corners,
             outlines,
+            sharp,
+            singular: SINGULAR * wide.min(high),
         }
     }
 
@@ -118,16 +133,13 @@ impl SizeField {
         size
     }
 
-    /// Whether a point is so near to the corner of a wall or a polygon that the strain there is that of a singularity, which
+    /// Whether a point is so near to the corner of a wall or a sharp one of a polygon that the strain there is that of a singularity, which
     /// grows without end on finer meshes.
     ///
     /// Implements: FEM-013.
     pub(super) fn singular(&self, point: Point) -> bool {
-        let sharp = |law: &[f64; 2]| *law == WALL_CORNER || *law == POLYGON_CORNER;
-        let corners = self.corners.iter().filter(|(_, law)| sharp(law));
-        corners
-            .map(|(corner, _)| (point - corner).norm())
-            .any(|distance| distance < SINGULAR)
+        let mut distances = self.sharp.iter().map(|corner| (point - corner).norm());
+        distances.any(|distance| distance < self.singular)
     }
 
     /// About how many nodes a mesh of triangles with six nodes will have.
@@ -160,6 +172,20 @@ impl SizeField {
             |corner: Point| self.integral(corner.inf(&middle), corner.sup(&middle), cuts - 1);
         corners.map(part).iter().sum()
     }
+}
+
+/// The corners of a polygon where its edge turns by more than 30°, to either side.
+///
+/// Implements: FEM-013.
+fn sharp_corners(points: &[[f64; 2]]) -> Vec<Point> {
+    let edges = edges(points);
+    let next = edges.iter().cycle().skip(1);
+    let turns = edges.iter().zip(next).filter(|([a, b], [_, c])| {
+        let [a, b, c] = [*a, *b, *c].map(Point::from);
+        let (before, after) = (b - a, c - b);
+        before.dot(&after) < SHARP * before.norm() * after.norm()
+    });
+    turns.map(|([_, corner], _)| (*corner).into()).collect()
 }
 
 /// Distance of a point from an outline, m: of an ellipse to first order, which is exact for a circle and near the edge.

@@ -141,6 +141,25 @@ fn a_phantom_that_is_all_corner_is_judged_as_a_whole() {
     assert!(0.0 < det && det < 1.0, "{det}");
 }
 
+// Verifies: FEM-013.
+#[test]
+fn a_small_gel_is_as_inside_out_as_a_large_one_of_its_shape() {
+    let det = |scale: f64| {
+        let gel = builtin("none").changed(|parts| {
+            parts.layers.remove(0);
+            parts.layers[0].thickness = scale * 12e-3;
+            parts.well.width = scale * 19e-3;
+            (parts.probe.radius, parts.probe.length) = (scale * 4e-3, scale * 30e-3);
+        });
+        let model = Model::new(&gel.unwrap(), scale * 1e-3, Contact::default()).unwrap();
+        let map = model.map(&[scale * 3e-3], &[0.0], &|_| ()).unwrap();
+        map.certificate().unwrap().smallest_det.det
+    };
+    let (large, small) = (det(1.0), det(0.1));
+    // The strips beside the walls, which are 4 mm wide in both, make another mesh.
+    assert!(large < -0.2 && small < -0.2, "{large} {small}");
+}
+
 // Verifies: FEM-014.
 #[test]
 fn a_map_of_an_asymmetric_phantom_solves_each_side_by_itself() {

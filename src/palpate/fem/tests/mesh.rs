@@ -281,3 +281,34 @@ fn strains_near_sharp_corners_do_not_count() {
     let sliding = held_by(phantom, (Support::Sliding, Support::Fixed));
     assert!(!sharp(&sliding, walls[0], 0.0));
 }
+
+// Verifies: FEM-013.
+#[test]
+fn no_corner_of_a_polygon_for_a_disc_is_sharp() {
+    let corners = |count: usize, dent: f64| {
+        let angle = |k| std::f64::consts::TAU * k as f64 / count as f64;
+        let radius = |k| if k == 0 { dent } else { 3.2 };
+        let at = |k| {
+            [
+                radius(k) * f64::sin(angle(k)),
+                -radius(k) * f64::cos(angle(k)),
+            ]
+        };
+        polygon(&(0..count).map(at).collect::<Vec<_>>())
+    };
+    // How many of the corners count; the polygon's highest point is 3 mm deep.
+    let sharp = |shape| {
+        let phantom = with(vec![hard(0.0, 3.0, shape)]);
+        let Outline::Polygon(points) = phantom.inclusions()[0].outline() else {
+            panic!("a polygon")
+        };
+        let size = SizeField::new(&phantom, MESH_SIZE);
+        let is_sharp = |point: &&[f64; 2]| size.singular((**point).into());
+        points.iter().filter(is_sharp).count()
+    };
+    for (count, expected) in [(90, 0), (14, 0), (11, 11)] {
+        assert_eq!(sharp(corners(count, 3.2)), expected, "{count}");
+    }
+    // A dent of 1.5 mm in edges of 0.5 mm: the corner in it turns the other way, those beside it are sharp, and the next are near them.
+    assert_eq!(sharp(corners(40, 1.7)), 5);
+}
