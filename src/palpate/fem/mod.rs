@@ -49,7 +49,7 @@ pub use size::MESH_SIZE;
 /// Implements: REP-015.
 pub const SMALL_STRAIN_LIMIT: f64 = 0.2;
 
-/// Young's modulus over that of another material from which on a body is as good as rigid, while rounding leaves small residuals.
+/// Young's modulus over that of another material from which on a compact body is as good as rigid, while rounding leaves small residuals.
 const STIFFEST: f64 = 5e3;
 
 /// Which class of processors has the same bits of every force as this one.
@@ -108,7 +108,7 @@ impl fmt::Display for FemError {
                 let (limit, stiffest) = (cholesky::RESIDUAL_LIMIT, STIFFEST);
                 write!(
                     f,
-                    "forces are out of balance by {residual:.2e} of the load, more than {limit:e}; if a material is more than {stiffest} times as stiff as another, make it {stiffest} times as stiff, which changes the force by less than 0.1 %; else try a greater depth or another mesh size"
+                    "forces are out of balance by {residual:.2e} of the load, more than {limit:e}; if a material is more than {stiffest} times as stiff as another, make it {stiffest} times as stiff, which changes the force by less than 0.1 % unless the body is thin; else try a greater depth or another mesh size"
                 )
             }
             FemError::NoConvergence { pose, iterations } => {

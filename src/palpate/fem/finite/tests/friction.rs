@@ -105,6 +105,29 @@ fn a_path_ends_in_steady_sliding_and_has_its_mirror_image() {
     }
 }
 
+// Verifies: FIN-012.
+#[test]
+fn a_path_at_a_depth_of_4_mm_is_steady_after_3_mm() {
+    let phantom = builtin("6.6");
+    let down = (1..=4).map(|k| [f64::from(k), 0.0]);
+    let across = (1..=6).map(|k| [4.0, 0.5 * f64::from(k)]);
+    let poses: Vec<[f64; 2]> = down.clone().chain(across).collect();
+    let slid = path(&coarse(&phantom, Friction::Path(0.3)), &poses);
+    let sliding = coarse(&phantom, Friction::Steady(0.3));
+    // After 2 mm and after 3 mm.
+    let [early, end] = [2.0, 3.0].map(|x| {
+        let poses: Vec<[f64; 2]> = down.clone().map(|[depth, _]| [depth, x]).collect();
+        let (steady, along) = (at(&sliding, &poses).force, &slid[3 + 2 * x as usize]);
+        assert_near(along.pose.lateral, 1e-3 * x, 1e-15);
+        [
+            along.force.normal - steady.normal,
+            along.force.lateral - steady.lateral,
+        ]
+    });
+    assert!(end[0].abs() < 1e-8 && end[1].abs() < 1e-8, "{end:?}");
+    assert!(early[0] > 0.01 && early[1] > 0.2, "{early:?}");
+}
+
 // A node on the probe's lowest point that is held by 0.05 N upwards.
 // Verifies: FIN-005.
 #[test]
