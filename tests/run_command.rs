@@ -172,8 +172,7 @@ fn a_path_prints_a_row_for_each_pose_and_writes_a_series() {
     }
 }
 
-// Verifies: CLI-031, CLI-032, REP-003.
-// Verifies: CLI-032, FEM-086.
+// Verifies: CLI-031, CLI-032, REP-003, FEM-086.
 #[test]
 fn a_run_of_own_asymmetric_phantoms_shows_them() {
     let here = Place::new("own-run");

@@ -3,7 +3,7 @@
 //! The first line states the request, each further line one finished part.
 
 use std::fs::{File, TryLockError};
-use std::io::{self, BufRead, BufReader, SeekFrom};
+use std::io::{self, BufRead, BufReader, Read, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -11,6 +11,9 @@ use serde::Serialize;
 
 use crate::file::Store;
 use crate::refusal::Refusal;
+
+/// No line of a journal is as long, bytes.
+const LONGEST: u64 = 256 << 20;
 
 /// An open journal, locked against other processes.
 #[derive(Debug)]
@@ -50,12 +53,14 @@ pub fn take_lines(
     let (mut length, mut bytes) = (0, Vec::new());
     for number in first.. {
         bytes.clear();
-        let read = file.read_until(b'\n', &mut bytes);
-        read.map_err(failed("read", path))?;
+        let read = (&mut file).take(LONGEST).read_until(b'\n', &mut bytes);
+        let read = read.map_err(failed("read", path))?;
+        let in_line = |refusal: Refusal| refusal.at(number).in_file(path.display().to_string());
         let Some((b'\n', text)) = bytes.split_last() else {
+            let long = Refusal::state("this line does not end", "delete the file, or give another");
+            in_line(long).when(read as u64 == LONGEST)?;
             break;
         };
-        let in_line = |refusal: Refusal| refusal.at(number).in_file(path.display().to_string());
         let text = std::str::from_utf8(text);
         let text = text.map_err(|_| in_line(Refusal::state("this line is not UTF-8", "")))?;
         take(text).map_err(in_line)?;
@@ -125,7 +130,9 @@ impl<F: Store> Lines<F> {
         }
         let mut reader = BufReader::new(&mut file);
         let mut first = Vec::new();
-        let read = reader.read_until(b'\n', &mut first);
+        // A longer line is not the request.
+        let most = 1 + request.len() as u64;
+        let read = (&mut reader).take(most).read_until(b'\n', &mut first);
         read.map_err(failed("read", &path))?;
         let mut whole = 0;
         if first == request.as_bytes() {

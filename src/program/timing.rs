@@ -169,7 +169,7 @@ fn reason(arguments: &TimingArguments, judged: &Judged) -> String {
             format!("{slower}, {run} of them in a row; at most {most} are allowed")
         }
         _ => {
-            let least = judged.at_least_us;
+            let least = judged.at_least_us.unwrap_or_default();
             format!("{slower}: p{percentile} is at least {least} µs; the budget is {budget} µs")
         }
     }

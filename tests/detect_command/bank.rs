@@ -103,7 +103,10 @@ fn simulated_records_set_the_threshold() {
     let found = located("moved.csv", &format!("{KNOWN} {alarms} --simulations 2000"));
     // A sum of ten dependent tails is more than their union.
     assert!(number(&found, "eta") < number(&bound, "eta"), "{found}");
-    assert_eq!(["simulations", "seed"].map(|key| number(&found, key)), [2000.0, 1999.0]);
+    assert_eq!(
+        ["simulations", "seed"].map(|key| number(&found, key)),
+        [2000.0, 1999.0]
+    );
     let interval = &found["calibrated_false_alarm"];
     let [low, high] = [0, 1].map(|end: usize| interval[end].as_f64().unwrap());
     // Clopper-Pearson at 99 % of 100 of 2000: SciPy's beta.ppf gives 0.0382 and 0.0640.

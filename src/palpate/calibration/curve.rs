@@ -172,6 +172,12 @@ impl Curve {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// How many samples are air, if the probe touched the gel at `contact`, m.
+    pub(super) fn air(&self, contact: f64) -> usize {
+        let air = self.depths.iter().filter(|depth| **depth <= contact);
+        air.count()
+    }
+
     /// The first sample at which the probe had reached its depth, but for jitter.
     fn reached(&self) -> usize {
         let deep = self.deepest() - 0.01 * (self.deepest() - self.depths[0]);

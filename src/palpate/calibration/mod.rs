@@ -52,7 +52,7 @@ pub struct CalibrationQuestion<'a> {
 pub enum CurveCause {
     /// Offset and drift of the sensor explain it as well.
     NoContact,
-    /// It begins in contact with the gel.
+    /// It begins in contact with the gel, or a sensor without drift would say so.
     NoAir,
     /// It differs from the best fit by more than noise and 0.5 % of its forces.
     Misfit,
@@ -81,7 +81,7 @@ const MISFIT: f64 = 0.005;
 const BY_CHANCE: f64 = 9.0;
 /// A force rises above the baseline where the information criterion is better by this.
 const CONTACT: f64 = 20.0;
-/// The drift is fitted where so many samples are air.
+/// The drift is fitted where so many samples are air, with it and without it.
 const LEAST_AIR: usize = 10;
 /// Contacts, over the depths of a curve, and exponents that are tried first.
 const CONTACTS: u32 = 100;
@@ -208,42 +208,56 @@ impl CurveModel<'_> {
 /// # Errors
 /// As [`crate::fem::Model::map`], of the phantom down to the depth of the curve; a layer that it does not have.
 ///
-/// Implements: CAL-010, CAL-011, CAL-012, CAL-013, CAL-021, CAL-022.
+/// Implements: CAL-010, CAL-011, CAL-012, CAL-013, CAL-021, CAL-022, CAL-041.
 pub fn calibrate<'a>(
     curve: &'a Curve,
     question: CalibrationQuestion<'_>,
 ) -> Result<Calibration<'a>, FemError> {
-    let mut known = Known {
+    let [drifts, still] = [false, true].map(|no_drift| Known {
         contact: question.contact,
-        no_drift: true,
-    };
-    let Some(mut start) = empirical_law(&curve.on_the_way(), question.contact) else {
-        return Ok(Calibration {
-            curve,
-            cause: Some(CurveCause::NoContact),
-            elastic: Elastic::Empirical,
-            relaxation: Relaxation::None,
-            known,
-            fit: None,
-            profile: OnceLock::new(),
-        });
+        no_drift,
+    });
+    let way = curve.on_the_way();
+    let Some(mut start) = empirical_law(&way, drifts) else {
+        let none = (Relaxation::None, None);
+        let found = Calibration::new(curve, still, Elastic::Empirical, none);
+        return Ok(found.of_cause(CurveCause::NoContact));
     };
     let contact = question.contact.unwrap_or(1e-3 * start[0]);
-    let air = curve.depths().iter().filter(|depth| **depth <= contact);
-    if air.count() >= LEAST_AIR {
-        start.insert(known.parameters(), 0.0);
-        known.no_drift = false;
+    if curve.air(contact) < LEAST_AIR {
+        return both_laws(curve, still, question.gel, &start);
     }
-    let found = best(curve, known, Elastic::Empirical, &start);
-    let has_air = found.cause != Some(CurveCause::NoAir);
-    match question.gel {
-        Some(gel) if has_air => {
+    start.insert(still.parameters(), 0.0);
+    let found = both_laws(curve, drifts, question.gel, &start)?;
+    if found.cause.is_some() || question.contact.is_some() {
+        return Ok(found);
+    }
+    let Some(start) = empirical_law(&way, still) else {
+        return Ok(found);
+    };
+    let beside = both_laws(curve, still, question.gel, &start)?;
+    Ok(if beside.lacks_air() {
+        beside.of_cause(CurveCause::NoAir)
+    } else {
+        found
+    })
+}
+
+/// The fit of the empirical law, from its parameters `start`, and after it that of the forces of the gel, if there is one.
+///
+/// Implements: CAL-010.
+fn both_laws<'a>(
+    curve: &'a Curve,
+    known: Known,
+    gel: Option<(&Phantom, Indentation<'_>)>,
+    start: &[f64],
+) -> Result<Calibration<'a>, FemError> {
+    let found = best(curve, known, Elastic::Empirical, start);
+    match gel {
+        Some(gel) if found.cause != Some(CurveCause::NoAir) => {
             // In much noise the empirical law may not end, where that of the gel does.
-            let start = found
-                .fit
-                .as_ref()
-                .map_or(start, |fit| fit.parameters.clone());
-            found.of_gel(gel, &start)
+            let ended = found.fit.as_ref().map(|fit| fit.parameters.clone());
+            found.of_gel(gel, ended.as_deref().unwrap_or(start))
         }
         _ => Ok(found),
     }
@@ -257,14 +271,14 @@ fn check_layers(phantom: &Phantom, layers: &[usize]) -> Result<(), Refusal> {
     }
 }
 
-/// Where a fit of the empirical law to the way into a gel begins, without drift: at the best of some contacts and exponents, what is linear
-/// fitted. None where no force rises above offset, drift and noise.
+/// Where a fit of the empirical law to the way into a gel begins, its drift left out: at the best of some contacts and exponents, what is
+/// linear fitted. None where no force rises above offset, drift (if there may be one) and noise.
 ///
 /// Implements: CAL-010, CAL-040.
-fn empirical_law(curve: &Curve, contact: Option<f64>) -> Option<Vec<f64>> {
+fn empirical_law(curve: &Curve, known: Known) -> Option<Vec<f64>> {
     let [least, most] = extremes(curve.depths().iter().copied())?;
     let scanned = |k: u32| least + (most - least) * f64::from(k) / f64::from(CONTACTS);
-    let contacts: Vec<f64> = match contact {
+    let contacts: Vec<f64> = match known.contact {
         Some(contact) => vec![contact],
         None => (0..CONTACTS).map(scanned).collect(),
     };
@@ -278,25 +292,29 @@ fn empirical_law(curve: &Curve, contact: Option<f64>) -> Option<Vec<f64>> {
     };
     let samples = curve.depths().len();
     let shares: Vec<f64> = curve.shares().collect();
-    let flat = DMatrix::from_fn(samples, 2, |at, column| [1.0, shares[at]][column]);
+    let baseline = 1 + usize::from(!known.no_drift);
+    let flat = DMatrix::from_fn(samples, baseline, |at, column| [1.0, shares[at]][column]);
     let mut best = (f64::INFINITY, None);
     for (at, exponent) in contacts.iter().flat_map(|at| EXPONENTS.map(|p| (at, p))) {
         let law = [0.0, libm::log(exponent), 0.0];
         let shape = curve.depths().iter().map(|depth| 1e3 * (depth - at));
         let shape = shape.map(|depth| Elastic::Empirical.force(depth, &law));
-        let mut columns = flat.clone().insert_column(2, 0.0);
-        columns.set_column(2, &DVector::from_iterator(samples, shape));
+        let mut columns = flat.clone().insert_column(baseline, 0.0);
+        columns.set_column(baseline, &DVector::from_iterator(samples, shape));
         let Some((found, squares)) = linear(&columns) else {
             continue;
         };
-        if found[2] > 0.0 && squares < best.0 {
-            let own = contact.is_none().then_some(1e3 * at);
-            let rest = [found[0], libm::log(found[2]), law[1], law[2]];
+        let stiffness = found[baseline];
+        if stiffness > 0.0 && squares < best.0 {
+            let own = known.contact.is_none().then_some(1e3 * at);
+            let rest = [found[0], libm::log(stiffness), law[1], law[2]];
             best = (squares, Some(own.into_iter().chain(rest).collect()));
         }
     }
-    // Offset, drift and stiffness, contact and exponent; the first two alone.
-    let rises = criterion(best.0, samples, 5) + CONTACT < criterion(linear(&flat)?.1, samples, 2);
+    // The baseline and stiffness, contact and exponent; the baseline alone.
+    let [all, alone] = [(best.0, baseline + 3), (linear(&flat)?.1, baseline)]
+        .map(|(squares, parameters)| criterion(squares, samples, parameters));
+    let rises = all + CONTACT < alone;
     best.1.filter(|_| rises)
 }
 
@@ -335,24 +353,34 @@ fn best<'a>(curve: &'a Curve, known: Known, elastic: Elastic, start: &[f64]) -> 
             }
         }
     }
-    let (relaxation, fit) = match found {
+    let found = match found {
         Some((_, relaxation, fit)) => (relaxation, Some(fit)),
         None => (Relaxation::None, None),
     };
-    let mut found = Calibration {
-        curve,
-        cause: None,
-        elastic,
-        relaxation,
-        known,
-        fit,
-        profile: OnceLock::new(),
-    };
+    let mut found = Calibration::new(curve, known, elastic, found);
     found.cause = found.why_not();
     found
 }
 
 impl<'a> Calibration<'a> {
+    /// What a fit says, if there is one, before it is judged.
+    fn new(
+        curve: &'a Curve,
+        known: Known,
+        elastic: Elastic,
+        (relaxation, fit): (Relaxation, Option<Fit>),
+    ) -> Calibration<'a> {
+        Calibration {
+            curve,
+            cause: None,
+            elastic,
+            relaxation,
+            known,
+            fit,
+            profile: OnceLock::new(),
+        }
+    }
+
     /// The fit of the forces of a gel, after that of the empirical law, from its parameters `start`.
     ///
     /// Implements: CAL-010, CAL-012.
@@ -442,6 +470,17 @@ impl<'a> Calibration<'a> {
         let contact = self.model().parts(&found.parameters).contact;
         let is_estimated = self.known.contact.is_none();
         (is_estimated && contact < self.curve.depths()[0]).then_some(CurveCause::NoAir)
+    }
+
+    /// Whether the fit describes the curve with less air than shows a drift.
+    ///
+    /// Implements: CAL-041.
+    fn lacks_air(&self) -> bool {
+        let Some(found) = self.fit.as_ref() else {
+            return false;
+        };
+        let contact = self.model().parts(&found.parameters).contact;
+        self.cause != Some(CurveCause::Misfit) && self.curve.air(contact) < LEAST_AIR
     }
 
     /// The fit, if the curve can be judged.

@@ -7,15 +7,13 @@ pub mod paper;
 use std::cell::Cell;
 use std::time::{Duration, Instant};
 
-use hdrhistogram::Histogram;
-
 use super::{
     Capabilities, Control, Cycle, DeviceError, ForceReport, HapticDevice, Received, Session,
 };
 use crate::refusal::Refusal;
 use crate::servo::{Limits, Table};
 pub use budget::{Budget, BudgetOutcome, Distribution, Judged};
-use budget::{Responses, histogram, nanoseconds};
+use budget::{Recorded, Responses};
 pub use log::judge_log;
 
 /// A device on the clock of the host instead of its own, and at the host's pace if it is asked to.
@@ -101,7 +99,7 @@ pub struct Timing {
 pub(super) struct Times {
     responses: Responses,
     /// Of the kernel, the write, the round trip.
-    histograms: [Histogram<u64>; 3],
+    others: [Recorded; 3],
     /// When the last force reports were written, by their number.
     sent: [Option<(u16, Duration)>; SENT],
     /// In the response, and in the kernel.
@@ -119,7 +117,7 @@ impl Times {
     pub(super) fn new(budget: Budget, period: Option<Duration>) -> Times {
         Times {
             responses: Responses::new(budget),
-            histograms: std::array::from_fn(|_| histogram()),
+            others: std::array::from_fn(|_| Recorded::new()),
             sent: [None; SENT],
             total: [Duration::ZERO; 2],
             period,
@@ -143,10 +141,8 @@ impl Times {
         });
         let round_trip = answered.map(|(_, written)| cycle.woke.saturating_sub(written));
         let times = [Some(compute), Some(write), round_trip];
-        for (histogram, time) in self.histograms.iter_mut().zip(times) {
-            if let Some(time) = time {
-                histogram.saturating_record(nanoseconds(time));
-            }
+        for (other, time) in self.others.iter_mut().zip(times) {
+            time.into_iter().for_each(|time| other.record(time));
         }
         let sequence = cycle.force.sequence;
         *self.slot(sequence) = Some((sequence, cycle.written));
@@ -162,8 +158,7 @@ impl Times {
     /// The figures of the cycles so far; `None` without one.
     pub(super) fn timing(&self) -> Option<Timing> {
         let [response, compute] = self.total.map(|total| total.as_secs_f64());
-        let [compute_us, write_us, round_trip_us] =
-            self.histograms.each_ref().map(Distribution::of);
+        let [compute_us, write_us, round_trip_us] = self.others.each_ref().map(Distribution::of);
         Some(Timing {
             judged: self.responses.judged()?,
             compute_us: compute_us?,

@@ -10,6 +10,7 @@ use clap::{Args, Subcommand};
 use rayon::prelude::*;
 
 use super::CliError;
+use super::error::refuse;
 use super::output::{Envelope, Format, make_folder, print, write};
 use super::progress::resumed_bar;
 use file::read_plan;
@@ -118,6 +119,14 @@ fn run(arguments: &StudyRunArguments) -> Result<(), CliError> {
 
 /// Implements: STU-026, STU-027, STU-050, STU-051.
 fn merge(arguments: &MergeArguments) -> Result<(), CliError> {
+    let name = arguments
+        .out
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy();
+    if name.starts_with("samples-") {
+        refuse!("--out {name} has the name of a file of samples; choose another");
+    }
     let records = Records::find(&arguments.folders)?;
     let plan = records.plan()?;
     let sampler = Sampler::new(&plan)?;

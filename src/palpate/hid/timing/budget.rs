@@ -101,8 +101,8 @@ pub struct Judged {
     pub percentile: f64,
     /// How sure the bounds are, each of them.
     pub confidence_percent: f64,
-    /// The percentile is at least this, µs; 0 if there are too few cycles for a bound.
-    pub at_least_us: f64,
+    /// The percentile is at least this, µs; `None` if there are too few cycles for a bound.
+    pub at_least_us: Option<f64>,
     /// The percentile is at most this, µs; `None` if there are too few cycles for a bound.
     pub at_most_us: Option<f64>,
     /// Cycles that took longer than the budget.
@@ -120,7 +120,7 @@ pub struct Judged {
     pub jitter_us: Option<Distribution>,
 }
 
-/// Distribution of a time, µs.
+/// Distribution of a time, µs, within 0.1 % but for the longest.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Distribution {
     /// Half of all cycles are no longer.
@@ -129,37 +129,50 @@ pub struct Distribution {
     pub p99: f64,
     /// 99.9 % of all.
     pub p99_9: f64,
-    /// All.
+    /// The longest.
     pub max: f64,
 }
 
 impl Distribution {
     /// `None` of no time.
-    pub(super) fn of(times: &Histogram<u64>) -> Option<Distribution> {
-        let quantile = |share| times.value_at_quantile(share) as f64 / 1e3;
-        (!times.is_empty()).then(|| Distribution {
+    pub(super) fn of(of: &Recorded) -> Option<Distribution> {
+        let quantile = |share| of.times.value_at_quantile(share).min(of.longest) as f64 / 1e3;
+        (!of.times.is_empty()).then(|| Distribution {
             p50: quantile(0.5),
             p99: quantile(0.99),
             p99_9: quantile(0.999),
-            max: times.max() as f64 / 1e3,
+            max: quantile(1.0),
         })
     }
 }
 
-/// From 1 ns to centuries within 0.1 %: everything that a cycle can take.
-pub(super) fn histogram() -> Histogram<u64> {
-    Histogram::new_with_bounds(1, u64::MAX, 3).expect("these bounds and digits are right")
+/// Times, recorded without allocation: from 1 ns to centuries within 0.1 %, everything that a cycle can take, and the longest.
+pub(super) struct Recorded {
+    pub times: Histogram<u64>,
+    longest: u64,
 }
 
-pub(super) fn nanoseconds(time: Duration) -> u64 {
-    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
+impl Recorded {
+    pub fn new() -> Recorded {
+        let times = Histogram::new_with_bounds(1, u64::MAX, 3);
+        Recorded {
+            times: times.expect("these bounds and digits are right"),
+            longest: 0,
+        }
+    }
+
+    pub fn record(&mut self, time: Duration) {
+        let nanoseconds = u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
+        self.times.saturating_record(nanoseconds);
+        self.longest = self.longest.max(nanoseconds);
+    }
 }
 
 /// Times of cycles, recorded without allocation.
 pub(in crate::hid) struct Responses {
     budget: Budget,
-    times: Histogram<u64>,
-    jitter: Histogram<u64>,
+    responses: Recorded,
+    jitter: Recorded,
     misses: u64,
     /// Misses in a row up to now.
     run: u64,
@@ -171,8 +184,8 @@ impl Responses {
     pub fn new(budget: Budget) -> Responses {
         Responses {
             budget,
-            times: histogram(),
-            jitter: histogram(),
+            responses: Recorded::new(),
+            jitter: Recorded::new(),
             misses: 0,
             run: 0,
             longest_run: 0,
@@ -181,14 +194,14 @@ impl Responses {
 
     /// How many there are.
     pub fn cycles(&self) -> u64 {
-        self.times.len()
+        self.responses.times.len()
     }
 
     /// The next cycle, and how far its begin was from the right time, if that is known.
     pub fn record(&mut self, response: Duration, jitter: Option<Duration>) {
-        self.times.saturating_record(nanoseconds(response));
+        self.responses.record(response);
         if let Some(jitter) = jitter {
-            self.jitter.saturating_record(nanoseconds(jitter));
+            self.jitter.record(jitter);
         }
         let missed = response > self.budget.cycle;
         self.run = if missed { self.run + 1 } else { 0 };
@@ -201,18 +214,18 @@ impl Responses {
     /// Implements: HID-062, HID-064, HID-060.
     pub fn judged(&self) -> Option<Judged> {
         let (budget, cycles) = (&self.budget, self.cycles());
-        let response_us = Distribution::of(&self.times)?;
+        let (times, response_us) = (&self.responses.times, Distribution::of(&self.responses)?);
         let (lower, upper) = budget.ranks(cycles).ok()?;
         let budget_us = budget.cycle.as_nanos() as f64 / 1e3;
         let within = cycles - self.misses;
         // The longest of the times that the histogram does not tell from that of a rank.
         let longest = |rank: u64| {
             let share = (rank as f64 - 0.5) / cycles as f64;
-            self.times.value_at_quantile(share)
+            times.value_at_quantile(share)
         };
         // On which side of the budget a time lies is known exactly.
         let at_least = |rank: u64| {
-            let time = self.times.lowest_equivalent(longest(rank)) as f64 / 1e3;
+            let time = times.lowest_equivalent(longest(rank)) as f64 / 1e3;
             time.max(if within < rank { budget_us } else { 0.0 })
         };
         let at_most = |rank: u64| {
@@ -235,7 +248,7 @@ impl Responses {
             budget_us,
             percentile: budget.percentile,
             confidence_percent: budget.confidence_percent,
-            at_least_us: if lower == 0 { 0.0 } else { at_least(lower) },
+            at_least_us: (lower > 0).then(|| at_least(lower)),
             at_most_us: upper.map(at_most),
             misses: self.misses,
             longest_run: self.longest_run,

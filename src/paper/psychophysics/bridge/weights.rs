@@ -129,7 +129,8 @@ fn by_deviance(a: &&WeightFit, b: &&WeightFit) -> core::cmp::Ordering {
     a.deviance.total_cmp(&b.deviance)
 }
 
-/// Which of the normal force, the same less its mean and the lateral force has the largest deviance; `None` if two have it.
+/// Which of the normal force, the same less its mean and the lateral force has the largest deviance; `None` if two have it, but for
+/// rounding.
 fn worst(statistic: Statistic, fits: [Option<WeightFit>; 3]) -> Option<Convention> {
     let conventions = [
         (Channel::Normal, Mean::Kept),
@@ -141,7 +142,7 @@ fn worst(statistic: Statistic, fits: [Option<WeightFit>; 3]) -> Option<Conventio
     let mut known: Vec<_> = known.collect();
     known.sort_by(|a, b| by_deviance(&b.0, &a.0));
     let &(worst, (channel, mean)) = known.first()?;
-    let is_shared = |(other, _): &(&WeightFit, _)| other.deviance == worst.deviance;
+    let is_shared = |(other, _): &(&WeightFit, _)| other.deviance >= (1.0 - 1e-9) * worst.deviance;
     if known.get(1).is_some_and(is_shared) {
         return None;
     }

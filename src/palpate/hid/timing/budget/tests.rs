@@ -77,9 +77,18 @@ fn bounds_are_times_of_the_order() {
     // Of 20 times the 6th and the 15th bound the median: SciPy's binom.cdf(5, 20, 0.5) = 0.0207 and that of 6 is 0.0577.
     let judged = responses.judged().unwrap();
     let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 2e-3;
-    assert!(near(judged.at_least_us, 6.0), "{judged:?}");
+    assert!(near(judged.at_least_us.unwrap(), 6.0), "{judged:?}");
     assert!(near(judged.at_most_us.unwrap(), 15.0), "{judged:?}");
     assert!(near(judged.response_us.max, 20.0));
+    // Two are too few for a lower bound, and the longest is not rounded.
+    let mut few = Responses::new(Budget::new(MS, 50.0, 95.0).unwrap());
+    for time in [1_250_001, 2] {
+        few.record(Duration::from_nanos(time), None);
+    }
+    let judged = few.judged().unwrap();
+    assert_eq!((judged.at_least_us, judged.at_most_us), (None, None));
+    assert_eq!(judged.response_us.max, 1250.001);
+    assert_eq!(judged.response_us.p99_9, 1250.001);
 }
 
 // Verifies: HID-064, HID-062.
@@ -93,7 +102,7 @@ fn bounds_agree_with_the_budget_and_the_times() {
             responses.record(seconds(time), None);
         }
         let judged = responses.judged().unwrap();
-        let (least, most) = (judged.at_least_us, judged.at_most_us.unwrap());
+        let (least, most) = (judged.at_least_us.unwrap(), judged.at_most_us.unwrap());
         assert!(least <= 1e6 * time && 1e6 * time <= most, "{judged:?}");
         assert!(
             least / time > 0.999e6 && most / time < 1.001e6,
