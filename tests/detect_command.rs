@@ -373,6 +373,9 @@ fn answer_and_notes(trace: &str, more: &str) -> (Value, String) {
     let (mut answer, said, code) = asked(&format!("{trace} {MAPS} {USUAL} {more}"));
     assert_eq!(code, Some(0), "{said}");
     answer["trace"] = Value::Null;
+    // What is stated of the columns stands in the answer.
+    let columns = answer.as_object_mut().unwrap().remove("columns");
+    assert_eq!(columns.is_some(), more.contains("--columns"));
     (answer, said)
 }
 

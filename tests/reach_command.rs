@@ -150,7 +150,7 @@ fn the_figure_shows_both_lines_and_says_them_in_words() {
     assert_has(&figure, words);
 }
 
-// Verifies: CLI-160, CLI-002.
+// Verifies: CLI-160, CLI-002, CLI-237.
 #[test]
 fn bad_arguments_are_refused_in_one_line() {
     place().refuses("reach", |words| format!("reach {words}"));

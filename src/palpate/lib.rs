@@ -1,5 +1,5 @@
 //! Inclusion probing after Yan, Scott and Fearing (1999): the force on a rigid probe that presses into a gel, the decision whether a hard
-//! inclusion lies in it, and its playback to a hand. This crate is what computes: 20,200 lines of code, on
+//! inclusion lies in it, and its playback to a hand. This crate is what computes: 20,500 lines of code, on
 //! the core, [`palpate_core`], whose modules it exports. Read it in this order:
 //!
 //! | module | content | paper |

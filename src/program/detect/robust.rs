@@ -90,7 +90,8 @@ pub fn detect(arguments: &DetectArguments, layout: &Layout) -> Result<(), CliErr
         refuse!("--figure draws one place; give one trace, or --together");
     }
     let named = |at: &usize| traces[..*at].contains(&traces[*at]);
-    if let Some(twice) = (0..traces.len()).find(named) {
+    let twice = (0..traces.len()).find(named);
+    if let Some(twice) = twice.filter(|_| arguments.model.together) {
         refuse!(
             "{} is named twice; name each record once",
             traces[twice].display()
