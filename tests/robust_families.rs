@@ -338,8 +338,13 @@ fn records_of_a_broken_sensor_are_not_judged() {
     }
 }
 
-/// Lateral forces of the other sign, in another unit, and of a channel that holds its value.
-const WRONG: [fn(f64) -> f64; 3] = [|force| -force, |force| 1e-3 * force, |_| 0.5];
+/// Lateral forces of the other sign, in another unit, of a channel that holds its value, and of one that records noise of 0.03 N alone.
+const WRONG: [fn(f64) -> f64; 4] = [
+    |force| -force,
+    |force| 1e-3 * force,
+    |_| 0.5,
+    |force| 0.05 * ((force.to_bits() % 1009) as f64 / 504.5 - 1.0),
+];
 
 /// The bank's map of the disc 4.6 mm deep.
 fn disc_of(bank: &Bank) -> &ForceMap {

@@ -80,8 +80,8 @@ def test_another_unit_sign_or_width_has_no_answer_but_a_cause(bank):
     x = np.linspace(-8, 8, 161)
     gel = noisy(bank.reference.sweep(4, x))
     for positions, forces, cause, cure in (
-        (x, 1000 * gel, "force_unit", "give them in N"),
-        (x, 102 * gel, "force_unit", "give them in N"),
+        (x, 1000 * gel, "force_unit", "give N and mm"),
+        (x, 102 * gel, "force_unit", "give N and mm"),
         (x, -gel, "sign", "reverse it"),
         (x / 1000, gel, "narrow", "check the unit of the positions"),
     ):
@@ -233,8 +233,8 @@ def test_each_sample_may_have_its_depth():
     judged = bank.judge(forces_n=record, noise_sd_n=0.05, **path)
     assert judged["inclusion"] and judged["samples_left_out"] == 0
     # A third pass of a millimetre is too short, and said to be left out.
-    longer = {"positions_mm": np.append(path["positions_mm"], x[:10]), "depths_mm": np.append(path["depths_mm"], np.full(10, 2.0))}
-    last = noisy(truth.sweep(2, x[:10]))
+    longer = {"positions_mm": np.append(path["positions_mm"], x[1:11]), "depths_mm": np.append(path["depths_mm"], np.full(10, 2.0))}
+    last = noisy(truth.sweep(2, x[1:11]))
     assert bank.judge(forces_n=np.hstack([record, last]), noise_sd_n=0.05, **longer)["samples_left_out"] == 10
     watcher = palpate.Watcher(bank, noise_sd_n=0.05, unknown=["offset", "gain"])
     for sample in zip(path["positions_mm"], record[1], record[0], path["depths_mm"]):

@@ -393,6 +393,17 @@ impl Watcher {
         let width = 2.0 * libm::sqrt(MISFIT * degrees.max(0.0));
         let is_misfit = degrees > 0.0 && (beyond < -width || beyond > width + 2.0 * MISFIT);
         let is_none = self.possible().all(|(_, of)| self.is_excluded(of));
+        // The bounds of either answer are broken: no hypothesis explains the record.
+        let upper = self.question.test.upper();
+        let is_misfit = is_misfit
+            || match self.answered {
+                Some((Decision::Inclusion, _)) => is_none,
+                Some((Decision::NoInclusion, _)) => {
+                    likeliest.is_some_and(|(_, of)| of.theta() >= upper)
+                        && self.theta().is_ok_and(|theta| theta >= upper)
+                }
+                None => false,
+            };
         // In air it would be the same, so that an answer that there is nothing does not begin.
         let is_silent = self.question.is_zeroed && !is_misfit && self.answered.is_none() && is_none;
         let is_hidden = is_none && self.others.iter().any(|of| self.is_likely(of));

@@ -472,12 +472,12 @@ impl<'a> Calibration<'a> {
         (is_estimated && contact < self.curve.depths()[0]).then_some(CurveCause::NoAir)
     }
 
-    /// Whether the fit describes the curve with less air than shows a drift.
+    /// Whether a fit without drift describes the curve with less air than shows a drift. One that does not end has none: air would end it.
     ///
     /// Implements: CAL-041.
     fn lacks_air(&self) -> bool {
-        let Some(found) = self.fit.as_ref() else {
-            return false;
+        let Some(found) = &self.fit else {
+            return true;
         };
         let contact = self.model().parts(&found.parameters).contact;
         self.cause != Some(CurveCause::Misfit) && self.curve.air(contact) < LEAST_AIR

@@ -146,15 +146,17 @@ impl<'a> RobustDetector<'a> {
             return Ok(answer);
         };
         self.conclude(&found, &noise, &mut answer)?;
-        let has_lateral = self.sweeps.iter().any(|sweep| sweep.has_lateral);
-        let decision = match is_none(answer.decision, &answer.causes) {
-            true => Some(Decision::NoInclusion),
-            false => answer.decision,
-        };
-        if let Some(decision) = decision.filter(|_| has_lateral) {
-            let is_turned = decision == Decision::NoInclusion
-                && self.is_likelier_turned(&cleaned, level, &noise, &found);
-            if is_turned || self.is_contradicted(decision, [&record, &noise])? {
+        if self.sweeps.iter().any(|sweep| sweep.has_lateral) {
+            let alone = self.posterior_of_normal([&record, &noise])?;
+            answer.is_none_doubtful = alone.is_some_and(|[theta, _]| theta >= 0.0)
+                || self.is_likelier_turned(&cleaned, level, &noise, &found);
+            let is_contradicted = match answer.decision {
+                Some(Decision::Inclusion) => {
+                    alone.is_some_and(|[_, posterior]| posterior <= 1.0 - self.question.sure)
+                }
+                other => is_none(other, &answer.causes) && answer.is_none_doubtful,
+            };
+            if is_contradicted {
                 answer.decision = None;
                 answer.causes.push(Cause::Channels);
             }
@@ -317,14 +319,13 @@ impl<'a> RobustDetector<'a> {
         turned.is_some_and(|turned| whole(&turned) > whole(found) + MUCH_LIKELIER)
     }
 
-    /// Whether the normal forces alone say the opposite of a decision, and as surely: the lateral ones are not what they are said to be.
+    /// θ and the posterior by the normal forces alone, if they have a likelihood.
     ///
     /// Implements: ROB-009.
-    fn is_contradicted(
+    fn posterior_of_normal(
         &self,
-        decision: Decision,
         [record, noise]: [&DVector<f64>; 2],
-    ) -> Result<bool, Refusal> {
+    ) -> Result<Option<[f64; 2]>, Refusal> {
         let modes = self.sweeps.iter().map(|sweep| sweep.modes.count());
         let is_normal = modes.flat_map(|count| (0..2 * count).map(move |mode| mode >= count));
         let is_normal: Vec<bool> = is_normal.collect();
@@ -333,15 +334,12 @@ impl<'a> RobustDetector<'a> {
         let (classes, signals, shape) = of_rows(&rows, &self.weighted, &self.signals, &self.shape);
         let [record, noise] = [record, noise].map(|of| of.select_rows(&rows));
         let Some(found) = evidence(&record, &noise, &classes, &signals, &shape) else {
-            return Ok(false);
+            return Ok(None);
         };
         let [none, any] = found.totals();
-        let question = &self.question;
-        let alone = posterior(any - none, question.prior_h1).map_err(refused)?;
-        Ok(match decision {
-            Decision::Inclusion => alone <= 1.0 - question.sure,
-            Decision::NoInclusion => alone >= question.sure,
-        })
+        let theta = any - none;
+        let posterior = posterior(theta, self.question.prior_h1).map_err(refused)?;
+        Ok(Some([theta, posterior]))
     }
 
     /// γ of signal number `signal` beside each class, in white noise of a standard deviation, N: the signal-to-noise ratio if the

@@ -136,6 +136,8 @@ pub struct RobustAnswer {
     pub in_air: Vec<[usize; 2]>,
     /// What either hypothesis expects of the records, where they were compared.
     pub explanation: Option<Explanation>,
+    /// Whether "no inclusion" would rest on lateral forces that may not be what they are said to be.
+    pub is_none_doubtful: bool,
 }
 
 impl RobustAnswer {

@@ -159,7 +159,7 @@ impl<'a> BankHypotheses<'a> {
             several: (1.0 - one).max(0.0),
             none_down_to: self
                 .none_down_to(&answer.thetas)
-                .filter(|_| !self.is_zeroed),
+                .filter(|_| !self.is_zeroed && !answer.is_none_doubtful),
         }
     }
 
