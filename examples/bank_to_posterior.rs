@@ -10,7 +10,7 @@ use palpate::trace::{Correlation, Criterion, Noise, Question, Trace, Unknown};
 fn main() -> Result<(), Box<dyn Error>> {
     // Five positions and three depths of the inclusion of a built-in phantom, under a probe 4 mm deep.
     let in_mm = |values: &[f64]| -> Vec<f64> { values.iter().map(|value| 1e-3 * value).collect() };
-    let laterals: Vec<f64> = (-8..=8).map(|step| 1e-3 * f64::from(step)).collect();
+    let laterals: Vec<f64> = (-16..=16).map(|step| 5e-4 * f64::from(step)).collect();
     let mut plan = BankPlan::new(Phantom::builtin("4.6")?, 4e-3, &laterals)?;
     plan.positions = in_mm(&[-4.0, -2.0, 0.0, 2.0, 4.0]);
     plan.depths = in_mm(&[3.6, 4.6, 5.6]);

@@ -11,7 +11,7 @@ use palpate::trace::{Correlation, Criterion, Noise, Question, Trace, Unknown};
 
 fn main() -> Result<(), Box<dyn Error>> {
     // What a sweep 4 mm deep would read, without an inclusion and with one 6.6 mm deep.
-    let laterals: Vec<f64> = (-8..=8).map(|step| 1e-3 * f64::from(step)).collect();
+    let laterals: Vec<f64> = (-16..=16).map(|step| 5e-4 * f64::from(step)).collect();
     let map = |name| -> Result<_, Box<dyn Error>> {
         let model = Model::new(&Phantom::builtin(name)?, 1e-3, Contact::default())?;
         Ok(model.map(&[4e-3], &laterals, &|_| ())?)
