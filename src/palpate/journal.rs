@@ -9,11 +9,8 @@ use std::sync::{Mutex, PoisonError};
 
 use serde::Serialize;
 
-use crate::file::Store;
+use crate::file::{LONGEST, Store};
 use crate::refusal::Refusal;
-
-/// No line of a journal is as long, bytes.
-const LONGEST: u64 = 256 << 20;
 
 /// An open journal, locked against other processes.
 #[derive(Debug)]

@@ -27,7 +27,7 @@ pub use write::{check_writable, write, write_new};
 use crate::refusal::{Refusal, did_you_mean};
 
 /// The longest text that is read, bytes: more than a million cycles of playback, recorded.
-const LONGEST: u64 = 256 << 20;
+pub(crate) const LONGEST: u64 = 256 << 20;
 
 /// The byte order mark, with which some editors begin a text.
 const MARK: char = '\u{feff}';
