@@ -145,7 +145,7 @@ fn any_question(u: &mut Draws) -> RobustQuestion<'static> {
         &[],
         &[Part::Gel, Part::Support],
         &[Part::Surface],
-        &Part::ALL,
+        &Part::KNOWN,
     ];
     let sd = [u.power(-6.0, 2.0), u.power(-6.0, 2.0)].map(f64::abs);
     RobustQuestion {

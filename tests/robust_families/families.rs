@@ -24,6 +24,18 @@ fn turned([x, n]: [f64; 2], slope: f64) -> [f64; 2] {
     [x - slope * n, n + slope * x]
 }
 
+/// A sine of a size and a length (m) at x, and its slope.
+fn sine(x: f64, size: f64, length: f64, phase: f64) -> [f64; 2] {
+    let (sin, cos) = (TAU * (x / length + phase)).sin_cos();
+    [size * sin, size * TAU / length * cos]
+}
+
+/// The forces over a surface of the sum of some heights (m) with their slopes.
+fn over(f: &dyn Fn(f64, f64) -> [f64; 2], x: f64, heights: &[[f64; 2]]) -> [f64; 2] {
+    let [height, slope] = [0, 1].map(|of| heights.iter().map(|height| height[of]).sum::<f64>());
+    turned(f(DEPTH + height, x), slope)
+}
+
 fn between(low: f64, high: f64, u: f64) -> f64 {
     low + (high - low) * u
 }
@@ -198,6 +210,44 @@ pub const MOTIONS: &[(&str, Happens, Ends)] = &[
             let [l, n] = f(DEPTH - a * v * v, x)
                 .map(|q| q * (1.0 - 0.1 * (1.0 - (-s / 5e-3).exp())) * (1.0 + 0.05 * v));
             [l - 0.15 * n, n]
+        },
+        nothing,
+    ),
+    (
+        "surface has waves",
+        |f, x, u| {
+            let size = between(0.05e-3, 0.2e-3, u[0]);
+            over(f, x, &[sine(x, size, between(7e-3, 13e-3, u[1]), u[2])])
+        },
+        nothing,
+    ),
+    (
+        "surface has two waves",
+        |f, x, u| {
+            let sizes = [u[0], u[1]].map(|u| between(0.03e-3, 0.1e-3, u));
+            let short = sine(x, sizes[0], between(6e-3, 9e-3, u[2]), u[3]);
+            let long = sine(x, sizes[1], between(9e-3, 14e-3, u[4]), u[5]);
+            over(f, x, &[short, long])
+        },
+        nothing,
+    ),
+    (
+        "sensor sways",
+        |f, x, u| {
+            let (size, length) = (between(0.05, 0.2, u[0]), between(5e-3, 20e-3, u[1]));
+            let [l, n] = f(DEPTH, x);
+            let [of_l, of_n] = [u[2], u[3]].map(|phase| sine(x, size, length, phase)[0]);
+            [l + of_l, n + of_n]
+        },
+        nothing,
+    ),
+    (
+        "sensor sways twice",
+        |f, x, u| {
+            let [size, other] = [u[0], u[1]].map(|u| between(0.03, 0.1, u));
+            let [l, n] = f(DEPTH, x);
+            let both = |a: f64, b: f64| sine(x, size, 8e-3, a)[0] + sine(x, other, 14e-3, b)[0];
+            [l + both(u[2], u[3]), n + both(u[4], u[5])]
         },
         nothing,
     ),

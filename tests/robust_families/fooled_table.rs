@@ -78,7 +78,7 @@ impl World {
         let parts: Vec<Part> = match known {
             Known::Nothing | Known::Noise => Vec::new(),
             Known::Gel => vec![Part::Gel, Part::Support],
-            Known::All => Part::known().collect(),
+            Known::All => Part::KNOWN.to_vec(),
         };
         let question = RobustQuestion {
             known: &parts,

@@ -383,7 +383,7 @@ impl Bank {
     ) -> PyResult<Bound<'py, PyAny>> {
         let record = record(&self.bank, positions_mm, forces_n, depths_mm)?;
         let prior = prior.map(|prior| list("prior", prior, 0)).transpose()?;
-        let known = chosen("known", known.list(), Part::known())?;
+        let known = chosen("known", known.list(), Part::KNOWN)?;
         let question = RobustQuestion {
             known: &known,
             is_zeroed: zeroed,

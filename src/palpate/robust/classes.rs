@@ -38,7 +38,39 @@ pub enum Part {
     Relaxation,
     /// A random walk of the sensor.
     Walk,
+    /// Waves of the surface, with wavenumbers in a band of [`WAVES`].
+    #[serde(skip)]
+    Waves(usize),
+    /// Sways of the sensor, with wavenumbers in a band of [`SWAYS`].
+    #[serde(skip)]
+    Sway(usize),
 }
+
+/// A band of wavenumbers, cycles in a radius of the probe: its middle and its width.
+type Band = [f64; 2];
+
+/// The bands of waves of the surface and of sways of the sensor, the last of all: beside any sines at once, an inclusion explains a
+/// single one better than they do.
+///
+/// Implements: ROB-024.
+const WAVES: [Band; 5] = [
+    [0.55, 0.2],
+    [0.75, 0.2],
+    [0.95, 0.2],
+    [1.15, 0.2],
+    [0.85, 0.8],
+];
+const SWAYS: [Band; 7] = [
+    [0.4, 0.12],
+    [0.52, 0.12],
+    [0.64, 0.12],
+    [0.76, 0.12],
+    [0.88, 0.12],
+    [1.0, 0.12],
+    [0.7, 0.72],
+];
+/// The distance between the wavenumbers of waves, cycles in a radius of the probe.
+const BETWEEN_WAVES: f64 = 0.1;
 
 /// Sweeps that have a part in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -79,8 +111,8 @@ const EXACT: (Part, f64) = (Part::Smooth, 0.002);
 ///
 /// Implements: ROB-022.
 #[rustfmt::skip]
-pub const CLASSES: [Class; 19] = {
-    use Part::{Broad, Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Tilt, UnevenFriction, Walk};
+pub const CLASSES: [Class; 32] = {
+    use Part::{Broad, Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Sway, Tilt, UnevenFriction, Walk, Waves};
     [
         class("the maps hold", 2.0, &[EXACT]),
         class("the forces are off smoothly by 0.5 %", 1.0, &[(Smooth, 0.005)]),
@@ -100,6 +132,19 @@ pub const CLASSES: [Class; 19] = {
         class("the sensor wanders a little", 0.5, &[(Walk, 0.05)]),
         class("the sensor wanders", 0.5, &[(Walk, 0.15)]),
         class("the sensor wanders far", 0.5, &[(Walk, 0.5)]),
+        class("the surface has waves, 1.8 radii long", 0.2, &[(Waves(0), 0.015), EXACT]),
+        class("the surface has waves, 1.3 radii long", 0.2, &[(Waves(1), 0.015), EXACT]),
+        class("the surface has waves, 1.1 radii long", 0.2, &[(Waves(2), 0.015), EXACT]),
+        class("the surface has waves, 0.9 radii long", 0.2, &[(Waves(3), 0.015), EXACT]),
+        class("the surface is wavy", 0.5, &[(Waves(4), 0.015), EXACT]),
+        class("the sensor sways over 2.5 radii", 0.2, &[(Sway(0), 0.08), EXACT]),
+        class("the sensor sways over 1.9 radii", 0.2, &[(Sway(1), 0.08), EXACT]),
+        class("the sensor sways over 1.6 radii", 0.2, &[(Sway(2), 0.08), EXACT]),
+        class("the sensor sways over 1.3 radii", 0.2, &[(Sway(3), 0.08), EXACT]),
+        class("the sensor sways over 1.1 radii", 0.2, &[(Sway(4), 0.08), EXACT]),
+        class("the sensor sways over 1 radius", 0.2, &[(Sway(5), 0.08), EXACT]),
+        class("the sensor sways", 0.5, &[(Sway(6), 0.05), EXACT]),
+        class("the sensor sways far", 0.5, &[(Sway(6), 0.1), EXACT]),
         class("several of these at once", 0.5,
             &[(Gel, 0.5), (Stage, 0.5), (Surface, 0.5), (Friction, 0.5), (Relaxation, 0.5), (Smooth, 0.005)]),
     ]
@@ -191,39 +236,23 @@ impl fmt::Display for Part {
 }
 
 impl Part {
-    /// All parts.
-    pub const ALL: [Part; 11] = {
-        use Part::{
-            Broad, Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Tilt,
-            UnevenFriction, Walk,
-        };
-        [
-            Smooth,
-            Broad,
-            Gel,
-            Support,
-            Stage,
-            Surface,
-            Tilt,
-            Friction,
-            UnevenFriction,
-            Relaxation,
-            Walk,
-        ]
-    };
-
     /// Those that can be known; their variants are known with them.
     ///
     /// Implements: ROB-050.
-    pub fn known() -> impl Iterator<Item = Part> {
-        Part::ALL.into_iter().filter(|part| part.name() == *part)
-    }
+    pub const KNOWN: [Part; 9] = {
+        use Part::{Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Tilt, Walk};
+        [
+            Smooth, Gel, Support, Stage, Surface, Tilt, Friction, Relaxation, Walk,
+        ]
+    };
 
     /// The part that a person calls known, for a variant of it.
     fn name(self) -> Part {
         match self {
             Part::Broad => Part::Smooth,
             Part::UnevenFriction => Part::Friction,
+            Part::Waves(_) => Part::Surface,
+            Part::Sway(_) => Part::Walk,
             part => part,
         }
     }
@@ -234,7 +263,7 @@ impl Part {
     pub fn shared_by(self) -> SharedBy {
         match self {
             Part::Gel | Part::Support => SharedBy::Gel,
-            Part::Stage | Part::Surface | Part::Tilt => SharedBy::Place,
+            Part::Stage | Part::Surface | Part::Tilt | Part::Waves(_) => SharedBy::Place,
             _ => SharedBy::None,
         }
     }
@@ -246,7 +275,7 @@ impl Class {
     /// Implements: ROB-047.
     pub fn remedy(&self) -> &'static str {
         match self.parts[0].0 {
-            Part::Surface | Part::Tilt => {
+            Part::Surface | Part::Tilt | Part::Waves(_) => {
                 "another sweep of the place, at 1 mm to find an inclusion, as deep as before to exclude one"
             }
             Part::Gel | Part::Support => "a reference sweep, or to know the gel better",
@@ -357,12 +386,20 @@ impl<'a> Disturbances<'a> {
             }
             Part::Support => of(all(&sweep.support)),
             Part::Stage => of((0..CURVES.len())
-                .map(|curve| self.curve(curve, false))
+                .map(|number| self.curve(number, false))
                 .collect()),
             Part::Surface => of((0..CURVES.len())
-                .map(|curve| self.curve(curve, true))
+                .map(|number| self.curve(number, true))
                 .collect()),
             Part::Tilt => of(vec![self.curve(0, false), self.curve(0, true)]),
+            Part::Waves(band) => of(self.waves(WAVES[band])),
+            Part::Sway(band) => {
+                let sway = self.modes.covariance(|i, j| {
+                    let apart = sweep.travelled[i] - sweep.travelled[j];
+                    correlation(SWAYS[band], apart / radius)
+                });
+                self.rest(&sway, 1.0, 1.0)
+            }
             Part::Friction => {
                 let mut vectors = vec![
                     self.channel(true, &|at| 0.2 * normal[at]),
@@ -384,21 +421,47 @@ impl<'a> Disturbances<'a> {
         }
     }
 
-    /// Curve `number` of the stage, or of the surface, whose slope turns the force.
+    /// Curve `number` of the stage, or of the surface.
     fn curve(&self, number: usize, is_surface: bool) -> DVector<f64> {
+        let size = CURVES[number] * self.sweep.radius;
+        self.height(|u| {
+            let slope = if is_surface { slope(number, u) } else { 0.0 };
+            [size * curve(number, u), size * slope]
+        })
+    }
+
+    /// Waves of the surface with evenly spaced wavenumbers of a band, whose heights have a variance of one radius squared together.
+    ///
+    /// Implements: ROB-024.
+    fn waves(&self, [middle, width]: Band) -> Vec<DVector<f64>> {
+        let (radius, half) = (self.sweep.radius, self.sweep.half);
+        let spaces = libm::round(width / BETWEEN_WAVES);
+        let size = radius / libm::sqrt(spaces + 1.0);
+        let wave = |at: usize| {
+            let wavenumber = middle + width * (at as f64 / spaces - 0.5);
+            let by_u = 2.0 * PI * wavenumber * half / radius;
+            [0.0, 0.5 * PI].map(|phase| {
+                let sine = |u: f64| {
+                    [
+                        libm::sin(by_u * u + phase),
+                        by_u * libm::cos(by_u * u + phase),
+                    ]
+                };
+                self.height(|u| sine(u).map(|of| size * of))
+            })
+        };
+        (0..=spaces as usize).flat_map(wave).collect()
+    }
+
+    /// What a height, m, and its derivative by u add, whose slope turns the force. A stage has no slope.
+    fn height(&self, of: impl Fn(f64) -> [f64; 2]) -> DVector<f64> {
         let (sweep, samples) = (self.sweep, self.modes.samples());
         let Force { lateral, normal } = channels(&sweep.forces);
-        let size = CURVES[number] * sweep.radius;
         let value = |at: usize| {
             let (sample, channel) = (at % samples, at / samples);
-            let u = sweep.u[sample];
-            let slope = if is_surface {
-                slope(number, u) / sweep.half
-            } else {
-                0.0
-            };
-            let turned = slope * [-normal[sample], lateral[sample]][channel];
-            size * (sweep.slope[at] * curve(number, u) + turned)
+            let [height, by_u] = of(sweep.u[sample]);
+            let turned = [-normal[sample], lateral[sample]][channel];
+            sweep.slope[at] * height + by_u / sweep.half * turned
         };
         let curved: Vec<f64> = (0..2 * samples).map(value).collect();
         self.modes.of(channels(&curved))
@@ -459,6 +522,19 @@ fn kernel(modes: &Modes, sweep: &Undisturbed, lengths: &[f64]) -> DMatrix<f64> {
         let kernel = squares.iter().map(kernel).sum::<f64>() / squares.len() as f64;
         sweep.share[i] * sweep.share[j] * kernel
     })
+}
+
+/// The correlation of sines, whose wavenumbers are anywhere in a band, over a distance in radii of the probe.
+///
+/// Implements: ROB-024.
+fn correlation([middle, width]: Band, apart: f64) -> f64 {
+    let within = PI * width * apart;
+    let sinc = if within == 0.0 {
+        1.0
+    } else {
+        libm::sin(within) / within
+    };
+    sinc * libm::cos(2.0 * PI * middle * apart)
 }
 
 /// A curve along the sweep, u from −1 to 1.

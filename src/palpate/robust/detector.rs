@@ -450,7 +450,7 @@ fn weighted<'c>(
     disturbances: &[Disturbances<'_>],
     places: &[usize],
 ) -> (Vec<Class>, Vec<WeightedClass>) {
-    let part = |part: Part| {
+    let joined_of = |part: Part| {
         let sweeps: Vec<_> = disturbances.iter().map(|sweep| sweep.part(part)).collect();
         joined(&sweeps, |sweep| match part.shared_by() {
             SharedBy::None => sweep,
@@ -458,13 +458,14 @@ fn weighted<'c>(
             SharedBy::Gel => 0,
         })
     };
-    let parts = Part::ALL.map(part);
+    let mut parts: BTreeMap<Part, DMatrix<f64>> = BTreeMap::new();
     let always: Vec<_> = disturbances.iter().map(Disturbances::always).collect();
     let always = joined(&always, |sweep| sweep);
     let class = |class: &Class| {
         let mut covariance = always.clone();
         for (part, size) in class.parts(known)? {
-            covariance += &parts[part as usize] * (size * size);
+            let part = parts.entry(part).or_insert_with(|| joined_of(part));
+            covariance += &*part * (size * size);
         }
         let weight = class.weight;
         Some((class.beside(known), WeightedClass { weight, covariance }))

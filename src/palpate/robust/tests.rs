@@ -236,7 +236,10 @@ fn broken_sensors_are_seen_and_coarse_ones_pass() {
 fn what_helps_is_that_of_the_first_part() {
     for class in CLASSES {
         let words = match class.name {
-            "the surface is domed or dished" | "the gel is tilted" => "another sweep of the place,",
+            "the surface is domed or dished" | "the gel is tilted" | "the surface is wavy" => {
+                "another sweep of the place,"
+            }
+            waves if waves.starts_with("the surface has waves") => "another sweep of the place,",
             "the gel is another"
             | "the gel is another, and off smoothly"
             | "walls or floor are loose"
@@ -257,13 +260,7 @@ fn what_is_known_leaves_the_classes() {
             .collect::<Vec<_>>()
     };
     assert_eq!(left(&[]).len(), CLASSES.len());
-    // Parts are found by their number.
-    assert!(
-        (0..)
-            .zip(Part::ALL)
-            .all(|(number, part)| part as usize == number)
-    );
-    let all = left(&Part::known().collect::<Vec<_>>());
+    let all = left(&Part::KNOWN);
     assert_eq!(
         all,
         [vec![(Part::Smooth, 0.002)], vec![(Part::Smooth, 0.005)]]
@@ -274,9 +271,13 @@ fn what_is_known_leaves_the_classes() {
     let parts: Vec<Part> = without.concat().into_iter().map(|(part, _)| part).collect();
     assert!(!parts.contains(&Part::Friction) && !parts.contains(&Part::UnevenFriction));
     assert!(parts.contains(&Part::Relaxation));
+    // Who knows the surface knows its waves, and who knows that the sensor does not walk, that it does not sway.
+    for (known, classes) in [(Part::Surface, 6), (Part::Walk, 11)] {
+        assert_eq!(left(&[known]).len(), CLASSES.len() - classes);
+    }
 }
 
-// Verifies: ROB-021, ROB-022, ROB-023, ROB-081, ROB-082.
+// Verifies: ROB-021, ROB-022, ROB-023, ROB-024, ROB-081, ROB-082.
 #[test]
 fn parts_and_classes_are_those_of_the_tables() {
     let (samples, radius, level) = (41, 6.5e-3, 2.0);
@@ -327,6 +328,28 @@ fn parts_and_classes_are_those_of_the_tables() {
         let cos = 0.0046 * radius * (2.0 * PI * u).cos();
         [100.0 * cos, 1000.0 * cos]
     });
+    // The first wavenumber of the second band of waves, and the last of all bands: 0.65 and 1.25 cycles in a radius.
+    for (band, wave, cycles, waves) in [(1, 0, 0.65, 3), (4, 16, 1.25, 9)] {
+        let vectors = of.part(Part::Waves(band)).vectors;
+        let (k, size) = (2.0 * PI * cycles / radius, radius / f64::from(waves).sqrt());
+        is(&vectors[wave], &|u| {
+            let (height, slope) = ((k * u * half).sin(), k * (k * u * half).cos());
+            let [lateral, normal] = [
+                100.0 * height - level * slope,
+                1000.0 * height + 0.5 * slope,
+            ];
+            [size * lateral, size * normal]
+        });
+        is(&vectors[wave + 1], &|u| {
+            let (height, slope) = ((k * u * half).cos(), -k * (k * u * half).sin());
+            let [lateral, normal] = [
+                100.0 * height - level * slope,
+                1000.0 * height + 0.5 * slope,
+            ];
+            [size * lateral, size * normal]
+        });
+        assert_eq!(vectors.len(), 2 * waves as usize);
+    }
     assert_eq!(
         [Part::Stage, Part::Tilt].map(|part| of.part(part).vectors.len()),
         [7, 2]
@@ -369,6 +392,18 @@ fn parts_and_classes_are_those_of_the_tables() {
     });
     first(Part::UnevenFriction, 0, &|x, y| gauss(x, y, &[0.38, 0.77]));
     first(Part::Walk, 0, &|x, y| x.min(y) / 16e-3);
+    // The mean of cos φ between two angles.
+    for (band, cycles) in [(1, [0.46, 0.58]), (6, [0.34, 1.06])] {
+        for channel in [0, 1] {
+            first(Part::Sway(band), channel, &|x, y| {
+                let [low, high] = cycles.map(|cycles| 2.0 * PI * cycles * (x - y) / radius);
+                match high == low {
+                    true => 1.0,
+                    false => (high.sin() - low.sin()) / (high - low),
+                }
+            });
+        }
+    }
     // Depths that were measured: their zero, and errors of their own. The first mode of N independent errors v has the variance Σv²/N.
     let measured = Undisturbed {
         zero_error: both(20.0, 200.0),
@@ -396,8 +431,8 @@ fn parts_and_classes_are_those_of_the_tables() {
         })
         .sum();
     assert_near(smooth, level * level * sum / samples as f64, 1e-10);
-    // 2, six of 1, and twelve of ½.
-    assert_near(CLASSES.iter().map(|class| class.weight).sum(), 14.0, 0.0);
+    // 2, six of 1, 15 of ½, and ten of ⅕.
+    assert_near(CLASSES.iter().map(|class| class.weight).sum(), 17.5, 1e-14);
     let several = CLASSES
         .iter()
         .find(|class| class.name.starts_with("several"))

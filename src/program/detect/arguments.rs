@@ -306,7 +306,7 @@ impl NoiseArguments {
     ///
     /// Implements: ROB-050.
     pub fn undisturbed(&self) -> Result<Vec<Part>, CliError> {
-        let known = listed(self.known.as_deref().unwrap_or("none"), Part::known());
+        let known = listed(self.known.as_deref().unwrap_or("none"), Part::KNOWN);
         known.or_else(|error| refuse!("--known {error}"))
     }
 
