@@ -213,44 +213,6 @@ pub const MOTIONS: &[(&str, Happens, Ends)] = &[
         },
         nothing,
     ),
-    (
-        "surface has waves",
-        |f, x, u| {
-            let size = between(0.05e-3, 0.2e-3, u[0]);
-            over(f, x, &[sine(x, size, between(7e-3, 13e-3, u[1]), u[2])])
-        },
-        nothing,
-    ),
-    (
-        "surface has two waves",
-        |f, x, u| {
-            let sizes = [u[0], u[1]].map(|u| between(0.03e-3, 0.1e-3, u));
-            let short = sine(x, sizes[0], between(6e-3, 9e-3, u[2]), u[3]);
-            let long = sine(x, sizes[1], between(9e-3, 14e-3, u[4]), u[5]);
-            over(f, x, &[short, long])
-        },
-        nothing,
-    ),
-    (
-        "sensor sways",
-        |f, x, u| {
-            let (size, length) = (between(0.05, 0.2, u[0]), between(5e-3, 20e-3, u[1]));
-            let [l, n] = f(DEPTH, x);
-            let [of_l, of_n] = [u[2], u[3]].map(|phase| sine(x, size, length, phase)[0]);
-            [l + of_l, n + of_n]
-        },
-        nothing,
-    ),
-    (
-        "sensor sways twice",
-        |f, x, u| {
-            let [size, other] = [u[0], u[1]].map(|u| between(0.03, 0.1, u));
-            let [l, n] = f(DEPTH, x);
-            let both = |a: f64, b: f64| sine(x, size, 8e-3, a)[0] + sine(x, other, 14e-3, b)[0];
-            [l + both(u[2], u[3]), n + both(u[4], u[5])]
-        },
-        nothing,
-    ),
     ("quantised 0.05 N", plain, |channels, _, _, _| {
         channels
             .iter_mut()
@@ -304,6 +266,48 @@ pub const MOTIONS: &[(&str, Happens, Ends)] = &[
     (
         "air",
         |_, _, u| [0.2 * (u[0] - 0.5), 0.6 * (u[1] - 0.5)],
+        nothing,
+    ),
+];
+
+/// More motions and sensors over the gel of the maps: sines, of one length and of two.
+pub const SINES: &[(&str, Happens, Ends)] = &[
+    (
+        "surface has waves",
+        |f, x, u| {
+            let size = between(0.05e-3, 0.2e-3, u[0]);
+            over(f, x, &[sine(x, size, between(7e-3, 13e-3, u[1]), u[2])])
+        },
+        nothing,
+    ),
+    (
+        "surface has two waves",
+        |f, x, u| {
+            let sizes = [u[0], u[1]].map(|u| between(0.03e-3, 0.1e-3, u));
+            let short = sine(x, sizes[0], between(6e-3, 9e-3, u[2]), u[3]);
+            let long = sine(x, sizes[1], between(9e-3, 14e-3, u[4]), u[5]);
+            over(f, x, &[short, long])
+        },
+        nothing,
+    ),
+    (
+        "sensor sways",
+        |f, x, u| {
+            let (size, length) = (between(0.05, 0.2, u[0]), between(5e-3, 20e-3, u[1]));
+            let [l, n] = f(DEPTH, x);
+            let [of_l, of_n] = [u[2], u[3]].map(|phase| sine(x, size, length, phase)[0]);
+            [l + of_l, n + of_n]
+        },
+        nothing,
+    ),
+    (
+        "sensor sways twice",
+        |f, x, u| {
+            let [size, other] = [u[0], u[1]].map(|u| between(0.03, 0.1, u));
+            let [l, n] = f(DEPTH, x);
+            let both = |a: f64, b: f64| sine(x, size, 8e-3, a)[0] + sine(x, other, 14e-3, b)[0];
+            [l + both(u[2], u[3]), n + both(u[4], u[5])]
+        },
         nothing,
     ),
 ];
