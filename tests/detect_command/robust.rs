@@ -78,7 +78,11 @@ fn a_lateral_force_that_is_none_or_of_the_other_sign_gives_no_answer() {
         place().write("lateral.csv", format!("{head}{}", rows.collect::<String>()));
     };
     // Without the classes in which the probe rubs unevenly or the sensor sways, 33 samples are enough.
-    let asked = || answer(&format!("lateral.csv {MAPS} --depth-mm 3 --known friction,walk"));
+    let asked = || {
+        answer(&format!(
+            "lateral.csv {MAPS} --depth-mm 3 --known friction,walk"
+        ))
+    };
     for stream in 2..6 {
         for (factor, decision, causes, code) in [
             (1.0, "inclusion", json!([]), 0),

@@ -41,6 +41,9 @@ pub enum Part {
     /// Waves of the surface, with wavenumbers in a band of [`WAVES`].
     #[serde(skip)]
     Waves(usize),
+    /// A bump of the surface at this tenth of the place, counted from 0.
+    #[serde(skip)]
+    Bump(usize),
     /// Sways of the sensor, with wavenumbers in a band of [`SWAYS`].
     #[serde(skip)]
     Sway(usize),
@@ -69,6 +72,10 @@ const SWAYS: [Band; 7] = [
     [1.0, 0.12],
     [0.7, 0.72],
 ];
+/// The standard deviation of a bump's height along the surface, over the radius of the probe.
+///
+/// Implements: ROB-025.
+const BUMP: f64 = 0.38;
 /// The distance between the wavenumbers of waves, cycles in a radius of the probe.
 const BETWEEN_WAVES: f64 = 0.1;
 
@@ -111,8 +118,8 @@ const EXACT: (Part, f64) = (Part::Smooth, 0.002);
 ///
 /// Implements: ROB-022.
 #[rustfmt::skip]
-pub const CLASSES: [Class; 32] = {
-    use Part::{Broad, Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Sway, Tilt, UnevenFriction, Walk, Waves};
+pub const CLASSES: [Class; 41] = {
+    use Part::{Broad, Bump, Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Sway, Tilt, UnevenFriction, Walk, Waves};
     [
         class("the maps hold", 2.0, &[EXACT]),
         class("the forces are off smoothly by 0.5 %", 1.0, &[(Smooth, 0.005)]),
@@ -137,6 +144,15 @@ pub const CLASSES: [Class; 32] = {
         class("the surface has waves, 1.1 radii long", 0.2, &[(Waves(2), 0.015), EXACT]),
         class("the surface has waves, 0.9 radii long", 0.2, &[(Waves(3), 0.015), EXACT]),
         class("the surface is wavy", 0.5, &[(Waves(4), 0.015), EXACT]),
+        class("the surface has a bump, 10 % along", 0.1, &[(Bump(0), 0.023), EXACT]),
+        class("the surface has a bump, 20 % along", 0.1, &[(Bump(1), 0.023), EXACT]),
+        class("the surface has a bump, 30 % along", 0.1, &[(Bump(2), 0.023), EXACT]),
+        class("the surface has a bump, 40 % along", 0.1, &[(Bump(3), 0.023), EXACT]),
+        class("the surface has a bump, 50 % along", 0.1, &[(Bump(4), 0.023), EXACT]),
+        class("the surface has a bump, 60 % along", 0.1, &[(Bump(5), 0.023), EXACT]),
+        class("the surface has a bump, 70 % along", 0.1, &[(Bump(6), 0.023), EXACT]),
+        class("the surface has a bump, 80 % along", 0.1, &[(Bump(7), 0.023), EXACT]),
+        class("the surface has a bump, 90 % along", 0.1, &[(Bump(8), 0.023), EXACT]),
         class("the sensor sways over 2.5 radii", 0.2, &[(Sway(0), 0.08), EXACT]),
         class("the sensor sways over 1.9 radii", 0.2, &[(Sway(1), 0.08), EXACT]),
         class("the sensor sways over 1.6 radii", 0.2, &[(Sway(2), 0.08), EXACT]),
@@ -251,7 +267,7 @@ impl Part {
         match self {
             Part::Broad => Part::Smooth,
             Part::UnevenFriction => Part::Friction,
-            Part::Waves(_) => Part::Surface,
+            Part::Waves(_) | Part::Bump(_) => Part::Surface,
             Part::Sway(_) => Part::Walk,
             part => part,
         }
@@ -263,7 +279,9 @@ impl Part {
     pub fn shared_by(self) -> SharedBy {
         match self {
             Part::Gel | Part::Support => SharedBy::Gel,
-            Part::Stage | Part::Surface | Part::Tilt | Part::Waves(_) => SharedBy::Place,
+            Part::Stage | Part::Surface | Part::Tilt | Part::Waves(_) | Part::Bump(_) => {
+                SharedBy::Place
+            }
             _ => SharedBy::None,
         }
     }
@@ -275,7 +293,7 @@ impl Class {
     /// Implements: ROB-047.
     pub fn remedy(&self) -> &'static str {
         match self.parts[0].0 {
-            Part::Surface | Part::Tilt | Part::Waves(_) => {
+            Part::Surface | Part::Tilt | Part::Waves(_) | Part::Bump(_) => {
                 "another sweep of the place, at 1 mm to find an inclusion, as deep as before to exclude one"
             }
             Part::Gel | Part::Support => "a reference sweep, or to know the gel better",
@@ -393,6 +411,7 @@ impl<'a> Disturbances<'a> {
                 .collect()),
             Part::Tilt => of(vec![self.curve(0, false), self.curve(0, true)]),
             Part::Waves(band) => of(self.waves(WAVES[band])),
+            Part::Bump(tenth) => of(vec![self.bump(tenth)]),
             Part::Sway(band) => {
                 let sway = self.modes.covariance(|i, j| {
                     let apart = sweep.travelled[i] - sweep.travelled[j];
@@ -451,6 +470,19 @@ impl<'a> Disturbances<'a> {
             })
         };
         (0..=spaces as usize).flat_map(wave).collect()
+    }
+
+    /// A bump as high as the radius of the probe.
+    ///
+    /// Implements: ROB-025.
+    fn bump(&self, tenth: usize) -> DVector<f64> {
+        let middle = 0.2 * (tenth + 1) as f64 - 1.0;
+        let by_u = self.sweep.half / (BUMP * self.sweep.radius);
+        self.height(|u| {
+            let off = by_u * (u - middle);
+            let height = self.sweep.radius * libm::exp(-0.5 * off * off);
+            [height, -height * off * by_u]
+        })
     }
 
     /// What a height, m, and its derivative by u add, whose slope turns the force. A stage has no slope.

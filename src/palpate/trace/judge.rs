@@ -2,7 +2,7 @@
 
 use super::cause::Cause;
 use super::design::{Design, squares};
-use super::fit::Fit;
+use super::fit::{Fit, MISFIT_RATE};
 use super::question::{Criterion, Question};
 use super::{Record, refused};
 use crate::detect::nuisance::{Nuisances, SubspaceDetector, SubspaceTest, Threshold};
@@ -39,6 +39,14 @@ pub const MUCH_LIKELIER: f64 = 6.907_755_278_982_137;
 /// Implements: TRC-077.
 pub fn is_none(decision: Option<Decision>, causes: &[Cause]) -> bool {
     decision == Some(Decision::NoInclusion) || causes == [Cause::Zeroed]
+}
+
+/// Whether T is too large for none, and too small for the inclusion.
+///
+/// Implements: TRC-075.
+fn fits_neither(test: &SubspaceTest) -> Result<bool, DetectError> {
+    let ErrorRates { false_alarm, miss } = test.rates(Threshold::At(test.t))?;
+    Ok(f64::max(false_alarm, miss) < 0.5 * MISFIT_RATE)
 }
 
 impl Record {
@@ -120,7 +128,11 @@ impl Question<'_> {
             let statistic = detector.statistic(&mut white.residual.clone())?;
             let test = statistic.test(self.noise_level(), white.bias(&detector)?)?;
             let threshold = self.threshold(&test)?;
-            let (decision, causes) = self.verdict(threshold.decide(test.t), &fit);
+            let (mut decision, mut causes) = self.verdict(threshold.decide(test.t), &fit);
+            if is_none(decision, &causes) && fits_neither(&test)? {
+                decision = None;
+                causes.insert(0, Cause::Misfit);
+            }
             Ok(Judgement {
                 decision,
                 causes,

@@ -9,6 +9,8 @@ use palpate::stats::normal;
 
 /// Points of one Sobol' sequence: from there on another scrambling of it goes on.
 const SEQUENCE: u32 = 1 << 16;
+/// Rows whose samples are computed in years, and whose results fit in memory.
+const MOST_ROWS: usize = 1 << 20;
 /// Inputs at most: each takes two dimensions of the sequence.
 pub const MOST_INPUTS: usize = sobol_burley::NUM_DIMENSIONS as usize / 2;
 /// Meshes on which the medians are solved.
@@ -89,8 +91,8 @@ impl Design {
             let expected = format!("give 1 to {MOST_INPUTS}");
             return Err(Refusal::state(format!("{inputs} inputs"), expected));
         }
-        if rows < 2 || rows > u32::MAX as usize {
-            return Err(Refusal::value("rows", rows, "2 to 4294967295"));
+        if !(2..=MOST_ROWS).contains(&rows) {
+            return Err(Refusal::value("rows", rows, format!("2 to {MOST_ROWS}")));
         }
         let matrix = correlation_matrix(names, correlations)?;
         let groups = groups(&matrix);

@@ -519,6 +519,32 @@ fn a_prior_that_outweighs_both_channels_is_no_contradiction() {
     assert_eq!(verdict, (Some(Decision::NoInclusion), &[][..]));
 }
 
+// Verifies: TRC-075.
+#[test]
+fn a_part_of_the_signal_is_not_none() {
+    // γ is some 25: T of two fifths of the signal is 10 above 0 and 15 below γ, of a 25th 1 above 0.
+    for (sd, unknown) in [(Some(0.1), &USUAL[..3]), (None, USUAL)] {
+        let part = asked(&sweep(0.2, 1), unknown, sd);
+        assert_eq!(
+            (part.decision, &part.causes[..]),
+            (None, &[Cause::Misfit][..])
+        );
+        assert!(part.test.theta() < 0.0);
+        let little = asked(&sweep(0.02, 1), unknown, sd);
+        assert_eq!(little.decision, Some(Decision::NoInclusion));
+    }
+    let zeroed = Question {
+        is_zeroed: true,
+        unknown: USUAL,
+        noise: noise(None, Correlation::OfRecord),
+        ..question(4e-3)
+    };
+    let (without, with) = (gel(0.0), gel(0.5));
+    let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+    let found = zeroed.judge(hypotheses, &sweep(0.2, 1)).unwrap();
+    assert_eq!(found.causes, [Cause::Misfit, Cause::Zeroed]);
+}
+
 // Verifies: TRC-070, TRC-075, TRC-016.
 #[test]
 fn a_record_that_cannot_be_judged_has_a_cause() {
