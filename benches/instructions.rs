@@ -87,7 +87,7 @@ fn robust() -> (RobustDetector<'static>, Vec<f64>, Vec<f64>) {
     (detector.expect("a detector"), lateral, normal)
 }
 
-#[library_benchmark(config = at_most(23_800_000))]
+#[library_benchmark(config = at_most(52_500_000))]
 #[bench::a_hundred_hypotheses(robust())]
 fn record_by_the_robust_model(
     (detector, lateral, normal): (RobustDetector<'static>, Vec<f64>, Vec<f64>),
