@@ -224,7 +224,7 @@ fn answers(
 }
 
 /// False answers of 30 that a family may have in a cell, by maps and by the bank, where that is more than one: a bump of the surface
-/// is an inclusion to 87 % (`spec/limits.md`).
+/// is an inclusion to 87 % (`spec/limits.md`), and of two sways one may be an inclusion beside the other.
 const WORST: [(&str, [u64; 2]); 2] = [("bump", [2, 4]), ("sensor sways twice", [1, 2])];
 
 // Verifies: ROB-060, ROB-041, ROB-022.

@@ -270,7 +270,8 @@ pub const MOTIONS: &[(&str, Happens, Ends)] = &[
     ),
 ];
 
-/// More motions and sensors over the gel of the maps: sines, of one length and of two.
+/// More motions and sensors over the gel of the maps: sines, of one length and of two. They come last, so that the other families keep
+/// their seeds.
 pub const SINES: &[(&str, Happens, Ends)] = &[
     (
         "surface has waves",

@@ -41,7 +41,7 @@ pub enum Part {
     /// Waves of the surface, with wavenumbers in a band of [`WAVES`].
     #[serde(skip)]
     Waves(usize),
-    /// A bump of the surface at this tenth of the place, counted from 0.
+    /// A bump of the surface after so many tenths of the place, 1 to 9.
     #[serde(skip)]
     Bump(usize),
     /// Sways of the sensor, with wavenumbers in a band of [`SWAYS`].
@@ -52,8 +52,8 @@ pub enum Part {
 /// A band of wavenumbers, cycles in a radius of the probe: its middle and its width.
 type Band = [f64; 2];
 
-/// The bands of waves of the surface and of sways of the sensor, the last of all: beside any sines at once, an inclusion explains a
-/// single one better than they do.
+/// The bands of waves of the surface and of sways of the sensor. The last one holds the others: two sines need it. One sine needs a
+/// narrow band, for an inclusion explains it better than many sines at once do.
 ///
 /// Implements: ROB-024.
 const WAVES: [Band; 5] = [
@@ -144,15 +144,15 @@ pub const CLASSES: [Class; 41] = {
         class("the surface has waves, 1.1 radii long", 0.2, &[(Waves(2), 0.015), EXACT]),
         class("the surface has waves, 0.9 radii long", 0.2, &[(Waves(3), 0.015), EXACT]),
         class("the surface is wavy", 0.5, &[(Waves(4), 0.015), EXACT]),
-        class("the surface has a bump, 10 % along", 0.1, &[(Bump(0), 0.023), EXACT]),
-        class("the surface has a bump, 20 % along", 0.1, &[(Bump(1), 0.023), EXACT]),
-        class("the surface has a bump, 30 % along", 0.1, &[(Bump(2), 0.023), EXACT]),
-        class("the surface has a bump, 40 % along", 0.1, &[(Bump(3), 0.023), EXACT]),
-        class("the surface has a bump, 50 % along", 0.1, &[(Bump(4), 0.023), EXACT]),
-        class("the surface has a bump, 60 % along", 0.1, &[(Bump(5), 0.023), EXACT]),
-        class("the surface has a bump, 70 % along", 0.1, &[(Bump(6), 0.023), EXACT]),
-        class("the surface has a bump, 80 % along", 0.1, &[(Bump(7), 0.023), EXACT]),
-        class("the surface has a bump, 90 % along", 0.1, &[(Bump(8), 0.023), EXACT]),
+        class("the surface has a bump, 10 % along", 0.1, &[(Bump(1), 0.023), EXACT]),
+        class("the surface has a bump, 20 % along", 0.1, &[(Bump(2), 0.023), EXACT]),
+        class("the surface has a bump, 30 % along", 0.1, &[(Bump(3), 0.023), EXACT]),
+        class("the surface has a bump, 40 % along", 0.1, &[(Bump(4), 0.023), EXACT]),
+        class("the surface has a bump, 50 % along", 0.1, &[(Bump(5), 0.023), EXACT]),
+        class("the surface has a bump, 60 % along", 0.1, &[(Bump(6), 0.023), EXACT]),
+        class("the surface has a bump, 70 % along", 0.1, &[(Bump(7), 0.023), EXACT]),
+        class("the surface has a bump, 80 % along", 0.1, &[(Bump(8), 0.023), EXACT]),
+        class("the surface has a bump, 90 % along", 0.1, &[(Bump(9), 0.023), EXACT]),
         class("the sensor sways over 2.5 radii", 0.2, &[(Sway(0), 0.08), EXACT]),
         class("the sensor sways over 1.9 radii", 0.2, &[(Sway(1), 0.08), EXACT]),
         class("the sensor sways over 1.6 radii", 0.2, &[(Sway(2), 0.08), EXACT]),
@@ -244,10 +244,10 @@ pub struct Disturbances<'a> {
     level: f64,
 }
 
-/// Its name on the command line and in JSON.
+/// The name on the command line and in JSON of the part that a person calls known.
 impl fmt::Display for Part {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.serialize(f)
+        self.name().serialize(f)
     }
 }
 
@@ -411,7 +411,7 @@ impl<'a> Disturbances<'a> {
                 .collect()),
             Part::Tilt => of(vec![self.curve(0, false), self.curve(0, true)]),
             Part::Waves(band) => of(self.waves(WAVES[band])),
-            Part::Bump(tenth) => of(vec![self.bump(tenth)]),
+            Part::Bump(tenths) => of(vec![self.bump(tenths)]),
             Part::Sway(band) => {
                 let sway = self.modes.covariance(|i, j| {
                     let apart = sweep.travelled[i] - sweep.travelled[j];
@@ -460,13 +460,10 @@ impl<'a> Disturbances<'a> {
             let wavenumber = middle + width * (at as f64 / spaces - 0.5);
             let by_u = 2.0 * PI * wavenumber * half / radius;
             [0.0, 0.5 * PI].map(|phase| {
-                let sine = |u: f64| {
-                    [
-                        libm::sin(by_u * u + phase),
-                        by_u * libm::cos(by_u * u + phase),
-                    ]
-                };
-                self.height(|u| sine(u).map(|of| size * of))
+                self.height(|u| {
+                    let at = by_u * u + phase;
+                    [size * libm::sin(at), size * (by_u * libm::cos(at))]
+                })
             })
         };
         (0..=spaces as usize).flat_map(wave).collect()
@@ -475,8 +472,8 @@ impl<'a> Disturbances<'a> {
     /// A bump as high as the radius of the probe.
     ///
     /// Implements: ROB-025.
-    fn bump(&self, tenth: usize) -> DVector<f64> {
-        let middle = 0.2 * (tenth + 1) as f64 - 1.0;
+    fn bump(&self, tenths: usize) -> DVector<f64> {
+        let middle = 0.2 * tenths as f64 - 1.0;
         let by_u = self.sweep.half / (BUMP * self.sweep.radius);
         self.height(|u| {
             let off = by_u * (u - middle);

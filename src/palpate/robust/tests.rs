@@ -271,6 +271,10 @@ fn what_is_known_leaves_the_classes() {
     let parts: Vec<Part> = without.concat().into_iter().map(|(part, _)| part).collect();
     assert!(!parts.contains(&Part::Friction) && !parts.contains(&Part::UnevenFriction));
     assert!(parts.contains(&Part::Relaxation));
+    // Each part has the name of one that can be known.
+    let names =
+        [Part::Broad, Part::Bump(1), Part::Waves(0), Part::Sway(0)].map(|of| of.to_string());
+    assert_eq!(names, ["smooth", "surface", "surface", "walk"]);
     // Who knows the surface knows its waves, and who knows that the sensor does not walk, that it does not sway.
     for (known, classes) in [(Part::Surface, 15), (Part::Walk, 11)] {
         assert_eq!(left(&[known]).len(), CLASSES.len() - classes);
@@ -329,7 +333,7 @@ fn parts_and_classes_are_those_of_the_tables() {
         [100.0 * cos, 1000.0 * cos]
     });
     // The third of nine places is 30 % along: 3.2 mm before the middle.
-    is(&of.part(Part::Bump(2)).vectors[0], &|u| {
+    is(&of.part(Part::Bump(3)).vectors[0], &|u| {
         let (off, sd) = (8e-3 * u + 3.2e-3, 0.38 * radius);
         let height = radius * (-0.5 * (off / sd).powi(2)).exp();
         let slope = -height * off / (sd * sd);

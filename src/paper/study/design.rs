@@ -9,7 +9,7 @@ use palpate::stats::normal;
 
 /// Points of one Sobol' sequence: from there on another scrambling of it goes on.
 const SEQUENCE: u32 = 1 << 16;
-/// Rows whose samples are computed in years, and whose results fit in memory.
+/// Rows at most, so that there is memory for the results. So many samples take years.
 const MOST_ROWS: usize = 1 << 20;
 /// Inputs at most: each takes two dimensions of the sequence.
 pub const MOST_INPUTS: usize = sobol_burley::NUM_DIMENSIONS as usize / 2;
