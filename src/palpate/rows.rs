@@ -192,8 +192,8 @@ impl RobustAnswer {
             miss: "P(miss), worst class", self.rates.map(|rates| rates.miss);
         }
         for (hypothesis, key, label) in [
-            (0, "class_without", "without inclusion, as if"),
-            (1, "class_with", "with an inclusion, as if"),
+            (0, "class_without", "explanation without inclusion"),
+            (1, "class_with", "explanation with an inclusion"),
         ] {
             if let Some(class) = self.likeliest_class(hypothesis) {
                 let (Class { name, .. }, shares) = self.classes[class];

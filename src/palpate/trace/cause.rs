@@ -45,7 +45,7 @@ pub enum Cause {
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Cause::Sign => "the forces have the other sign than those of the maps: reverse it, for a normal force that pushes the probe up is positive",
+            Cause::Sign => "the forces have the opposite sign to those of the maps: reverse it; a normal force that pushes the probe up is positive",
             Cause::ForceUnit => "the forces are in another unit than was said, such as mN, or the depth is, such as m: say which, or give N and mm",
             Cause::Level => "the forces are too large for the maps' gel at this depth: take maps of this gel, depth and probe",
             Cause::Misfit => "the noise is not as it was stated, or the forces are not those of the maps: state the noise of a sample in N, take less as known, or take other maps",
@@ -55,9 +55,9 @@ impl fmt::Display for Cause {
             Cause::NoContact => "the forces are too small for the maps' gel at this depth: check that the probe touches, or say that the sensor was set to zero on the gel",
             Cause::InAir => "samples at the start or at the end are in air: leave them out",
             Cause::Narrow => "the sweep is shorter than half the radius of the probe: check the unit of the positions, or make a longer sweep",
-            Cause::Exchanged => "the map with the inclusion has smaller forces than the reference: exchange the maps",
+            Cause::Exchanged => "the map with the inclusion has smaller forces than the reference: swap the maps",
             Cause::Channels => "the lateral forces do not go with the normal ones: check their sign, unit and cable, or leave them out",
-            Cause::TooWeak => "the record is too weak to tell an inclusion from what else may bend it",
+            Cause::TooWeak => "the record is too weak to tell an inclusion from a disturbance that looks like one",
             Cause::Zeroed => "a sensor that was set to zero on the gel records the same in air as over a gel without an inclusion: set it to zero above the gel",
         })
     }

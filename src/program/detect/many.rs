@@ -219,7 +219,7 @@ fn tell(format: AnswerFormat, answers: Vec<Answer>) -> Result<(), CliError> {
     }
 }
 
-/// The table for people: file, decision, posterior, and the causes or the likeliest class.
+/// The table for people: file, decision, posterior, and the likeliest class or the causes.
 fn table(answers: &[Answer]) -> String {
     let line = |answer: &Answer| {
         let field = |key: &str| answer.rows.get(key);
@@ -230,7 +230,7 @@ fn table(answers: &[Answer]) -> String {
             "inclusion" => field("class_with"),
             _ => field("class_without"),
         };
-        let class = class.map(|class| format!("as if {}", text(class.get("class"))));
+        let class = class.map(|class| text(class.get("class")));
         let why = match answer.is_judged {
             Some(false) => text(field("causes")),
             _ => class.unwrap_or_default(),
@@ -244,7 +244,7 @@ fn table(answers: &[Answer]) -> String {
             why,
         ]
     };
-    let head = ["file", "decision", "posterior", ""].map(String::from);
+    let head = ["file", "decision", "posterior", "explanation or causes"].map(String::from);
     let lines: Vec<_> = std::iter::once(head)
         .chain(answers.iter().map(line))
         .collect();

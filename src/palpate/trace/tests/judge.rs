@@ -260,12 +260,6 @@ fn what_is_unknown_twice_counts_once() {
     }
 }
 
-/// The normal forces of a table.
-fn normal_alone(table: &ForceTable) -> ForceTable {
-    let (depths, laterals) = (table.depths().to_vec(), table.laterals().to_vec());
-    ForceTable::of_channels(depths, laterals, table.normal().clone(), None).unwrap()
-}
-
 // Verifies: TRC-011, TRC-014, TRC-015, TRC-068, TRC-070.
 #[test]
 fn a_lateral_force_that_is_not_there_counts_nowhere() {
@@ -276,7 +270,7 @@ fn a_lateral_force_that_is_not_there_counts_nowhere() {
         signal.map(|signal| 0.8 * signal[0]).into_array()
     });
     let one = both.clone().normal_alone();
-    let maps_of_one = [&without, &with].map(normal_alone);
+    let maps_of_one = [&without, &with].map(ForceTable::of_normal);
     let judged = |record: &Record, [without, with]: [&ForceTable; 2], noise: Noise| {
         let known_level = &[Unknown::Offset, Unknown::Drift, Unknown::Gain][..];
         let question = Question {
@@ -602,7 +596,7 @@ fn each_cause_says_what_to_do_without_an_option_of_the_command_line() {
             "{words}"
         );
     }
-    let both = "samples at the start or at the end are in air: leave them out; the record is too weak to tell an inclusion from what else may bend it";
+    let both = "samples at the start or at the end are in air: leave them out; the record is too weak to tell an inclusion from a disturbance that looks like one";
     assert_eq!(reasons(&[InAir, TooWeak]), both);
 }
 
