@@ -93,7 +93,7 @@ fn live() -> Result<(), Box<dyn Error>> {
         rate(SAMPLES as f64, || {
             let mut watcher = fresh.clone();
             for (position, force) in &samples {
-                watcher.push(*position, Some(force.lateral), force.normal)?;
+                watcher.push(*position, None, Some(force.lateral), force.normal)?;
                 if answers {
                     std::hint::black_box(watcher.answer()?);
                 }

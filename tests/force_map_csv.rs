@@ -1,6 +1,5 @@
 //! Measured force maps as CSV through the public interface.
 
-use palpate::csv::Layout;
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable, Matrix, Measurement, Source};
 use palpate::phantom::Phantom;
@@ -63,13 +62,11 @@ fn tables_of_spreadsheets_are_read() {
         format!("{number};{depth};{lateral};20,5;\"{normal}\";{sideways}")
     });
     let text = format!("{header}\r\n{}", rows.collect::<Vec<_>>().join("\r\n"));
-    let (found, notes) =
-        ForceTable::from_csv_with_notes(&text, "gel.csv", &Layout::default()).unwrap();
+    let (found, notes) = ForceTable::from_csv_with_notes(&text, "gel.csv", None).unwrap();
     assert_eq!(found, table());
     let decimal = "commas in its numbers are decimal commas";
     assert_eq!(notes, ["column \"T/°C\" is not used", decimal]);
-    let (found, notes) =
-        ForceTable::from_csv_with_notes(EXAMPLE, "gel.csv", &Layout::default()).unwrap();
+    let (found, notes) = ForceTable::from_csv_with_notes(EXAMPLE, "gel.csv", None).unwrap();
     assert_eq!((found, notes.len()), (table(), 0));
 }
 
@@ -121,14 +118,18 @@ fn every_missing_pose_is_named() {
 #[test]
 fn a_measured_map_keeps_the_files_name_without_its_folder() {
     let phantom = Phantom::builtin("2.6").unwrap();
-    let map = ForceMap::from_csv(EXAMPLE, "lab/gel.csv", "ATI", Some(phantom.clone())).unwrap();
+    let measured = |text: &str| {
+        let source = Source::Measured(Measurement::new("lab/gel.csv", "ATI"));
+        ForceMap::new(source, Some(phantom.clone()), read(text).unwrap())
+    };
+    let map = measured(EXAMPLE).unwrap();
     let source = Source::Measured(Measurement::new("gel.csv", "ATI"));
     assert_eq!((map.source(), map.phantom()), (&source, Some(&phantom)));
     assert_eq!(map.table(), &table());
     let deep = EXAMPLE.replace("\n1.5,", "\n15.5,");
     assert_error(
-        ForceMap::from_csv(&deep, "lab/gel.csv", "", Some(phantom)),
-        "lab/gel.csv: phantom: depth_mm = 15.5, but must be [..]",
+        measured(&deep),
+        "phantom: depth_mm = 15.5, but must be [..]",
     );
 }
 

@@ -159,7 +159,7 @@ fn recorded(
 fn detectors(bank: &Bank) -> [RobustDetector<'static>; 2] {
     let zeros = vec![0.0; SAMPLES];
     let over = Record::new("over", &positions(), Force::new(&zeros, &zeros)).unwrap();
-    let changes = GelChanges::new(bank.reference(), DEPTH, &GelUncertainty::default()).unwrap();
+    let changes = GelChanges::new(bank.reference(), &[DEPTH], &GelUncertainty::default()).unwrap();
     let sweep = RobustSweep {
         record: &over,
         depth: DEPTH,

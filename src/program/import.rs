@@ -56,7 +56,7 @@ pub fn import(arguments: &ImportArguments) -> Result<(), CliError> {
     };
     let layout = arguments.layout.get()?;
     let (mut forces, notes) = match measurement.grid {
-        None => ForceTable::from_csv_with_notes(&text, &file, &layout)?,
+        None => ForceTable::from_csv_with_notes(&text, &file, Some(&layout))?,
         Some(steps) => {
             let read = ForceTable::from_scattered_csv(&text, &file, &layout, steps)?;
             let (gridded, mut notes) = read;

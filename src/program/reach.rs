@@ -99,18 +99,8 @@ struct BesideClasses {
 struct LargestDepth {
     diameter_m: f64,
     youngs_modulus_pa: f64,
-    nothing_unknown: DepthReached,
-    unknown: DepthReached,
-}
-
-#[derive(Debug, Serialize)]
-struct DepthReached {
-    /// None if it is not detected at the least depth of the bank.
-    largest_depth_m: Option<f64>,
-    /// Whether it is detected at the greatest depth of the bank, so that the limit lies deeper.
-    is_beyond_bank: bool,
-    /// γ at each depth of the bank.
-    gamma: Vec<f64>,
+    nothing_unknown: Reached,
+    unknown: Reached,
 }
 
 /// The smallest detectable diameter of an inclusion of one modulus at one depth; none if the largest of the bank is not detected.
@@ -181,8 +171,8 @@ pub fn reach(arguments: &ReachArguments) -> Result<(), CliError> {
         gamma_needed,
         depths_m: bank.axes()[1].clone(),
         diameters_m: bank.axes()[2].clone(),
-        largest_depths: plain.iter().zip(&beside).map(largest).collect(),
         smallest_diameters: smallest(&bank, [&plain, &beside], gamma_needed),
+        largest_depths: plain.into_iter().zip(beside).map(largest).collect(),
         beside_classes,
         asked,
     };
@@ -208,13 +198,11 @@ fn sweep(arguments: &ReachArguments, bank: &Bank) -> Result<Record, CliError> {
 /// Implements: CLI-161.
 fn beside_classes(reach: &Reach<'_>) -> Result<Vec<BesideClasses>, CliError> {
     let (reference, uncertainty) = (reach.bank.reference(), GelUncertainty::default());
-    let changes = match reach.sweep.depths() {
-        Some(_) => {
-            let passes = reach.passes();
-            GelChanges::along(reference, &passes.iter().collect::<Vec<_>>(), &uncertainty)
-        }
-        None => GelChanges::new(reference, reach.bank.depth(), &uncertainty),
+    let depths = match reach.sweep.depths() {
+        Some(_) => GelChanges::depths_along(reference, &reach.passes().iter().collect::<Vec<_>>()),
+        None => vec![reach.bank.depth()],
     };
+    let changes = GelChanges::new(reference, &depths, &uncertainty);
     let name = reference.phantom().map_or("", Phantom::name);
     let found = reach.beside_classes(changes.map_err(CliError::fem(name))?.as_ref())?;
     let [_, _, diameters, moduli] = reach.bank.axes();
@@ -230,17 +218,12 @@ fn beside_classes(reach: &Reach<'_>) -> Result<Vec<BesideClasses>, CliError> {
 }
 
 /// Implements: CLI-160.
-fn largest((plain, beside): (&Reached, &Reached)) -> LargestDepth {
-    let reached = |of: &Reached| DepthReached {
-        largest_depth_m: of.depth,
-        is_beyond_bank: of.is_beyond,
-        gamma: of.gamma.clone(),
-    };
+fn largest((nothing_unknown, unknown): (Reached, Reached)) -> LargestDepth {
     LargestDepth {
-        diameter_m: plain.diameter,
-        youngs_modulus_pa: plain.modulus,
-        nothing_unknown: reached(plain),
-        unknown: reached(beside),
+        diameter_m: nothing_unknown.diameter,
+        youngs_modulus_pa: nothing_unknown.modulus,
+        nothing_unknown,
+        unknown,
     }
 }
 
@@ -266,11 +249,9 @@ fn smallest(bank: &Bank, reached: [&[Reached]; 2], needed: f64) -> Vec<SmallestD
 }
 
 impl ReachAnswer {
-    fn depth(&self, reached: &DepthReached) -> String {
-        match reached.largest_depth_m {
-            Some(depth) if reached.is_beyond_bank => {
-                format!("deeper than the bank ({})", mm(depth))
-            }
+    fn depth(&self, reached: &Reached) -> String {
+        match reached.depth {
+            Some(depth) if reached.is_beyond => format!("deeper than the bank ({})", mm(depth)),
             Some(depth) => format!("{:.2}", 1e3 * depth),
             None => format!("not even at the least depth ({})", mm(self.depths_m[0])),
         }

@@ -74,7 +74,7 @@ pub fn run(arguments: &RunArguments) -> Result<(), CliError> {
     let theories = theories::compare(&config, &theories)?;
     let reference = maps.remove(0);
     let (depth, _) = probe_depth(reference.table().depths());
-    let changes = GelChanges::new(&reference, depth, &GelUncertainty::default());
+    let changes = GelChanges::new(&reference, &[depth], &GelUncertainty::default());
     let run = Run {
         changes: changes.map_err(CliError::fem(phantoms[0].name()))?,
         reference,

@@ -91,7 +91,7 @@ pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
         let Some(sample) = samples.sample(&line)? else {
             continue;
         };
-        let pushed = watcher.push_at(sample.position, sample.depth, sample.lateral, sample.normal);
+        let pushed = watcher.push(sample.position, sample.depth, sample.lateral, sample.normal);
         let found = pushed.and_then(|()| watcher.answer());
         let found = found.map_err(|error| samples.refused(refused(error)))?;
         let decision = found.decision;

@@ -228,7 +228,7 @@ fn check_exact(hypotheses: Hypotheses<'_>, record: &Record, question: &RobustQue
 fn whatever_a_record_holds_the_answer_is_one() {
     let bank = bank();
     let own = gel(|_| (), &[3.2e-3, 3.6e-3, 4e-3, 4.4e-3, 4.8e-3]);
-    let changes = GelChanges::new(bank.reference(), DEPTH, &GelUncertainty::default()).unwrap();
+    let changes = GelChanges::new(bank.reference(), &[DEPTH], &GelUncertainty::default()).unwrap();
     let counts = Mutex::new([0_u64; 4]);
     let try_sweep = |sweep: u64| {
         let u = &mut Draws::new(sweep, u64::MAX);

@@ -60,7 +60,7 @@ impl World {
                 .unwrap()
         });
         let changes = [LIGHT, DEPTH]
-            .map(|depth| GelChanges::new(&maps[0], depth, &GelUncertainty::default()).unwrap());
+            .map(|depth| GelChanges::new(&maps[0], &[depth], &GelUncertainty::default()).unwrap());
         World { own, maps, changes }
     }
 

@@ -76,7 +76,8 @@ impl Judge {
         let record = Record::along("path", &over, &depths, Force::new(&zeros, &zeros)).unwrap();
         let passes = record.passes();
         let all: Vec<&Record> = passes.iter().collect();
-        let changes = GelChanges::along(bank.reference(), &all, &GelUncertainty::default());
+        let depths = GelChanges::depths_along(bank.reference(), &all);
+        let changes = GelChanges::new(bank.reference(), &depths, &GelUncertainty::default());
         let changes = changes.unwrap().unwrap();
         Judge {
             bank,

@@ -95,14 +95,7 @@ pub unsafe extern "C" fn palpate_position_report_encode(
     start: *mut u8,
     length: usize,
 ) -> Error {
-    unsafe {
-        encode(
-            report,
-            |report| Ok(PositionReport::encode(&report)),
-            start,
-            length,
-        )
-    }
+    unsafe { encode(report, |report| Ok(report.encode()), start, length) }
 }
 
 /// The force report in `length` = 8 bytes.
@@ -122,14 +115,7 @@ pub unsafe extern "C" fn palpate_force_report_encode(
     start: *mut u8,
     length: usize,
 ) -> Error {
-    unsafe {
-        encode(
-            report,
-            |report| Ok(ForceReport::encode(&report)),
-            start,
-            length,
-        )
-    }
+    unsafe { encode(report, |report| Ok(report.encode()), start, length) }
 }
 
 /// The capabilities in `length` = 17 bytes.
@@ -149,14 +135,7 @@ pub unsafe extern "C" fn palpate_capabilities_encode(
     start: *mut u8,
     length: usize,
 ) -> Error {
-    unsafe {
-        encode(
-            report,
-            |report| Ok(Capabilities::encode(&report)),
-            start,
-            length,
-        )
-    }
+    unsafe { encode(report, |report| Ok(report.encode()), start, length) }
 }
 
 /// The `PALPATE_CONTROL_…` in the `length` = 2 bytes of a control report.

@@ -1,4 +1,4 @@
-//! Where the fields of the structures lie, for the C compiler to assert the same (`tests/layout.c`).
+//! Where the fields of the structures lie, for the C compiler to assert the same (`tests/layout.rs`).
 //!
 //! Implements: CLB-007.
 

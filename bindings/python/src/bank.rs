@@ -82,7 +82,9 @@ impl Bank {
             return Ok(self.changes()?.map(Cow::Borrowed));
         }
         let usual = GelUncertainty::default();
-        let own = GelChanges::along(self.bank.reference(), passes, &usual);
+        let reference = self.bank.reference();
+        let depths = GelChanges::depths_along(reference, passes);
+        let own = GelChanges::new(reference, &depths, &usual);
         Ok(own.map_err(refused)?.map(Cow::Owned))
     }
 
@@ -92,7 +94,7 @@ impl Bank {
             return Ok(known.as_ref());
         }
         let (reference, depth) = (self.bank.reference(), self.bank.depth());
-        let found = GelChanges::new(reference, depth, &GelUncertainty::default());
+        let found = GelChanges::new(reference, &[depth], &GelUncertainty::default());
         let found = found.map_err(refused)?;
         Ok(self.changes.get_or_init(|| found).as_ref())
     }

@@ -77,7 +77,7 @@ impl Watcher {
         let depth = depth_mm
             .map(|depth| metres("depth_mm", depth))
             .transpose()?;
-        let pushed = (self.watcher).push_at(x, depth, lateral_force_n, normal_force_n);
+        let pushed = (self.watcher).push(x, depth, lateral_force_n, normal_force_n);
         let answer = pushed.and_then(|()| self.watcher.answer());
         let answer = answer.map_err(refused)?;
         let told = python(py, &answer)?;

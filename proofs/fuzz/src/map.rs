@@ -1,6 +1,6 @@
 //! Force maps.
 
-use palpate::force_map::{ForceMap, ForceTable, SAME_POSITION};
+use palpate::force_map::{ForceMap, ForceTable, Measurement, SAME_POSITION, Source};
 use palpate::refusal::Refusal;
 use palpate::servo::LoadedTable;
 
@@ -16,7 +16,10 @@ pub fn map_json(text: &str) -> Outcome {
 
 /// As [`map_json`] for CSV; what a refusal quotes stands in the line that it names.
 pub fn map_csv(text: &str) -> Outcome {
-    let read = ForceMap::from_csv(text, FILE, "a note", None);
+    let read = ForceTable::from_csv(text, FILE).and_then(|table| {
+        let source = Source::Measured(Measurement::new(FILE, "a note"));
+        ForceMap::new(source, None, table).map_err(|refusal| refusal.in_file(FILE))
+    });
     judged(read, check_map, |error| check_csv(&error, text))
 }
 

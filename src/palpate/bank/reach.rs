@@ -34,18 +34,22 @@ pub struct Reach<'a> {
 /// What is reached with one diameter and one modulus.
 ///
 /// Implements: BNK-071.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Reached {
     /// The diameter, m.
+    #[serde(skip)]
     pub diameter: f64,
     /// The Young's modulus, Pa.
+    #[serde(skip)]
     pub modulus: f64,
-    /// γ at each depth of the bank, at the position of the bank that is nearest to 0.
-    pub gamma: Vec<f64>,
     /// The largest depth with enough γ, m: none if it is not enough at the least depth of the bank.
+    #[serde(rename = "largest_depth_m")]
     pub depth: Option<f64>,
     /// Whether it is enough at the greatest depth of the bank too, and the true one is greater.
+    #[serde(rename = "is_beyond_bank")]
     pub is_beyond: bool,
+    /// γ at each depth of the bank, at the position of the bank that is nearest to 0.
+    pub gamma: Vec<f64>,
 }
 
 /// γ beside a class of disturbance, at each depth of the bank.

@@ -200,23 +200,14 @@ impl Watcher {
         })
     }
 
-    /// Adds a sample: position (m), lateral force, unless the sensor has none, and normal force (N). A NaN is missing.
+    /// Adds a sample: position (m), depth of its own (m), if it has one, lateral force, unless the sensor has none, and normal force (N). A
+    /// NaN is missing.
     ///
     /// # Errors
-    /// A number that is infinite or a force that is absurd; a bank of several depths; the sample then does not count.
+    /// A number that is infinite or a force that is absurd; of a bank of several depths, no depth; the sample then does not count.
     ///
-    /// Implements: SEQ-020, SEQ-024.
-    pub fn push(&mut self, x: f64, lateral: Option<f64>, normal: f64) -> Result<(), DetectError> {
-        self.push_at(x, None, lateral, normal)
-    }
-
-    /// As [`Watcher::push`], of a sample at a depth of its own (m).
-    ///
-    /// # Errors
-    /// As [`Watcher::push`]; of a bank of several depths, no depth.
-    ///
-    /// Implements: SEQ-030, SEQ-031, SEQ-024.
-    pub fn push_at(
+    /// Implements: SEQ-020, SEQ-024, SEQ-030, SEQ-031.
+    pub fn push(
         &mut self,
         x: f64,
         depth: Option<f64>,

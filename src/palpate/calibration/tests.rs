@@ -257,8 +257,7 @@ probe = { radius_mm = 6.5, length_mm = 30 }
 fn one_factor_is_that_of_all_moduli_and_of_an_inclusion_too() {
     let phantom = Phantom::builtin("4.6").unwrap();
     let moduli = |of: &Phantom| -> Vec<f64> {
-        let layers = of.layers().iter().map(|layer| layer.material);
-        let all = layers.chain(of.inclusions().iter().map(|of| of.material));
+        let all = of.materials();
         all.map(|material| material.youngs_modulus).collect()
     };
     let own = moduli(&phantom);

@@ -459,8 +459,8 @@ mod tests {
         let layout = layout
             .parse()
             .map_err(|refusal: Refusal| refusal.to_string())?;
-        let rows = Rows::parse_as(text, COLUMNS, "a trace", &layout);
-        Ok(rows.map_err(|refusal| refusal.to_string())?.rows[0].1)
+        let read = Rows::parse_optional(text, COLUMNS, 2, "a trace", &layout, false);
+        Ok(read.map_err(|refusal| refusal.to_string())?.0.rows[0].1)
     }
 
     // Verifies: MAP-046, MAP-045.
@@ -481,9 +481,10 @@ mod tests {
         // A name that is a number is a name first.
         let layout = "position=1[mm],normal=2[N]";
         assert_eq!(read("2,1\n3,4\n", layout), Ok([4e-3, 3.0]));
-        let rows = Rows::parse_as("2,1\n3,4\n", COLUMNS, "", &layout.parse().unwrap());
+        let layout = layout.parse().unwrap();
+        let rows = Rows::parse_optional("2,1\n3,4\n", COLUMNS, 2, "", &layout, false);
         let note = "line 1, which holds numbers, is taken for the header";
-        assert!(rows.unwrap().notes.contains(&note.to_string()));
+        assert!(rows.unwrap().0.notes.contains(&note.to_string()));
         // A name may end in a unit in square brackets, as the user's column may.
         let text = "pos (mm),t,Raw [mN]\n1,0.25,-2\n";
         for (layout, force) in [

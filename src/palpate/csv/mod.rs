@@ -37,32 +37,16 @@ impl<const N: usize> Rows<N> {
     ///
     /// Implements: MAP-030, MAP-033, MAP-041, MAP-040, TRC-001, TRC-004.
     pub fn parse(text: &str, columns: [Column; N], expected: &str) -> Result<Self, Refusal> {
-        Rows::parse_as(text, columns, expected, &Layout::default())
+        Ok(Rows::parse_optional(text, columns, N, expected, &Layout::default(), false)?.0)
     }
 
-    /// As [`Rows::parse`], of a file in this layout.
+    /// As [`Rows::parse`], of a file in this layout, where the header may lack all columns but the first `required`: their numbers are then
+    /// 0. Also whether each is there. Of samples, those that lack a number, empty or NaN, are left out with a note.
     ///
     /// # Errors
     /// As [`Rows::parse`]; a layout that states what the table does not have.
     ///
-    /// Implements: MAP-045, MAP-046, MAP-047.
-    pub fn parse_as(
-        text: &str,
-        columns: [Column; N],
-        expected: &str,
-        layout: &Layout,
-    ) -> Result<Self, Refusal> {
-        layout.check(&columns)?;
-        Rows::read(text, columns.map(Some), expected, layout)?.complete()
-    }
-
-    /// As [`Rows::parse_as`], where the header may lack all columns but the first `required`: their numbers are then 0. Also whether each
-    /// is there. Of samples, those that lack a number, empty or NaN, are left out with a note.
-    ///
-    /// # Errors
-    /// As [`Rows::parse_as`].
-    ///
-    /// Implements: MAP-048, CAL-001, TRC-011, TRC-080, MAP-083.
+    /// Implements: MAP-045, MAP-046, MAP-047, MAP-048, CAL-001, TRC-011, TRC-080, MAP-083.
     pub fn parse_optional(
         text: &str,
         columns: [Column; N],
@@ -72,35 +56,31 @@ impl<const N: usize> Rows<N> {
         are_samples: bool,
     ) -> Result<(Self, [bool; N]), Refusal> {
         let must = std::array::from_fn(|at| (at < required).then_some(columns[at]));
-        let header = Header::<N>::find(&lines(text, layout), must, layout);
+        let lines = lines(text, layout);
+        let header = Header::<N>::find(&lines, must, layout);
         let fields = header.map_or(Vec::new(), |header| header.fields);
         let is_there = |column| layout.states(column) || fields.iter().any(|of| names(of, column));
         let is_there = std::array::from_fn(|at| at < required || is_there(columns[at]));
         let there = std::array::from_fn(|at| is_there[at].then_some(columns[at]));
         layout.check(&columns)?;
-        let read = Rows::read(text, there, expected, layout)?;
-        let rows = if are_samples {
-            read.samples()
-        } else {
-            read.complete()?
-        };
+        let rows = Rows::read(&lines, there, expected, layout, are_samples)?;
         Ok((rows, is_there))
     }
 
-    /// The table without the rows in which a number is missing; 0 in place of a column that is none.
+    /// The table; 0 in place of a column that is none.
     fn read(
-        text: &str,
+        lines: &[(usize, &str)],
         columns: [Option<Column>; N],
         expected: &str,
         layout: &Layout,
-    ) -> Result<Read<N>, Refusal> {
-        let lines = lines(text, layout);
-        let header = Header::find(&lines, columns, layout);
+        are_samples: bool,
+    ) -> Result<Self, Refusal> {
+        let header = Header::find(lines, columns, layout);
         let header = header.map_err(|(found, (line, header))| {
             let found = format!("{found} in the header {:?}", shortened(header.trim()));
             Refusal::state(found, format!("give {expected}")).at(line)
         })?;
-        let mut notes = header.notes(&lines);
+        let mut notes = header.notes(lines);
         let rows = &lines[header.below..];
         let footer = header.footer(rows);
         if footer > 0 {
@@ -121,7 +101,14 @@ impl<const N: usize> Rows<N> {
         if mark == Some(',') {
             notes.push("commas in its numbers are decimal commas".into());
         }
-        let rows = Rows {
+        let count = missing.len();
+        let left_out = format!("samples with a missing number are not used: {count}");
+        match first {
+            Some(refusal) if !are_samples => return Err(refusal),
+            Some(_) => notes.push(left_out),
+            None => {}
+        }
+        Ok(Rows {
             line: lines[header.at].0,
             names: header
                 .found
@@ -130,34 +117,7 @@ impl<const N: usize> Rows<N> {
             notes,
             has_units: header.has_units(),
             mark,
-        };
-        let missing = first.map(|first| (missing.len(), first));
-        Ok(Read { rows, missing })
-    }
-}
-
-/// A table without the rows in which a number is missing.
-struct Read<const N: usize> {
-    rows: Rows<N>,
-    /// How many these are, if any, and what is wrong with the first.
-    missing: Option<(usize, Refusal)>,
-}
-
-impl<const N: usize> Read<N> {
-    /// The table, in which no number may be missing.
-    fn complete(self) -> Result<Rows<N>, Refusal> {
-        let rows = self.rows;
-        self.missing.map_or(Ok(rows), |(_, refusal)| Err(refusal))
-    }
-
-    /// The table, with a note of the rows that are left out.
-    fn samples(self) -> Rows<N> {
-        let mut rows = self.rows;
-        if let Some((count, _)) = self.missing {
-            let note = format!("samples with a missing number are not used: {count}");
-            rows.notes.push(note);
-        }
-        rows
+        })
     }
 }
 
@@ -579,7 +539,8 @@ mod tests {
                 "position={position}[mm],normal={normal}[N],lateral={lateral}[N],depth={depth}[mm]"
             );
             let layout = layout.parse().unwrap();
-            let read = Rows::parse_as("a,b,c,d\n1,2,3,4\n", FOUR, "", &layout);
+            let text = "a,b,c,d\n1,2,3,4\n";
+            let read = Rows::parse_optional(text, FOUR, 4, "", &layout, false);
             read.map_err(|refusal| refusal.to_string())
         };
         assert!(stated([4, 2, 1, 3]).is_ok());

@@ -1,10 +1,9 @@
 //! Measured force maps as CSV (`spec/force-map.md`).
 
 use super::grid::{Gridded, gridded};
-use super::{ForceMap, ForceTable, Matrix, Measurement, SAME_POSITION, Source, increasing};
+use super::{ForceTable, Matrix, SAME_POSITION, increasing};
 use crate::csv::{Column, Layout, Rows};
 use crate::decimal::{format_scaled, mm};
-use crate::phantom::Phantom;
 use crate::refusal::Refusal;
 
 /// Depth, lateral position, normal force, lateral force, which may be missing.
@@ -17,48 +16,6 @@ const COLUMNS: [Column; 4] = [
 /// The headers that are right, for a person, and what else there is where the user may state a layout.
 const EXPECTED_HEADER: &str = "depth_mm,lateral_mm,normal_force_n,lateral_force_n, in any order, lengths also as _m, forces also as _mn";
 const OR_STATED: &str = ", or say with --columns or [columns] what each holds";
-
-impl ForceMap {
-    /// The measured map in `text`, the content of `file`. The map records the file's name without
-    /// its folder, `note`, and the `phantom` that was measured, if it is known.
-    ///
-    /// ```
-    /// use palpate::force_map::ForceMap;
-    ///
-    /// let text = "lateral_mm,depth_mm,normal_force_mn,lateral_force_mn\n0,4,1500,0\n2,4,1250,-125\n";
-    /// let map = ForceMap::from_csv(text, "gel.csv", "third gel", None)?;
-    /// assert_eq!((map.table().depths(), map.table().laterals()), (&[0.004][..], &[0.0, 0.002][..]));
-    /// assert_eq!(map.table().both()?.lateral.values(), [0.0, -0.125]);
-    /// # Ok::<(), palpate::refusal::Refusal>(())
-    /// ```
-    ///
-    /// # Errors
-    /// The header does not name each of the four columns, but for the lateral force, once, a row is malformed, a pose is missing or there twice, or the forces
-    /// make no map (see [`ForceMap::new`]); with the file, and the line where there is one.
-    ///
-    /// Implements: MAP-026, MAP-030, MAP-032, MAP-033, MAP-037, MAP-041.
-    pub fn from_csv(
-        text: &str,
-        file: &str,
-        note: &str,
-        phantom: Option<Phantom>,
-    ) -> Result<ForceMap, Refusal> {
-        Ok(ForceMap::read_csv(text, file, (note, phantom), None)?.0)
-    }
-
-    /// As [`ForceMap::from_csv`], in this layout if the user may state one, with the notes of the reader.
-    pub(super) fn read_csv(
-        text: &str,
-        file: &str,
-        (note, phantom): (&str, Option<Phantom>),
-        layout: Option<&Layout>,
-    ) -> Result<(ForceMap, Vec<String>), Refusal> {
-        let (forces, notes) = ForceTable::read_csv(text, file, layout)?;
-        let source = Source::Measured(Measurement::new(file, note));
-        let map = ForceMap::new(source, phantom, forces);
-        Ok((map.map_err(|refusal| refusal.in_file(file))?, notes))
-    }
-}
 
 impl ForceTable {
     /// This table as CSV, row by row, lengths in mm and forces in N; without a column of lateral forces if it has none.
@@ -79,43 +36,35 @@ impl ForceTable {
         text
     }
 
-    /// The table in `text`, the content of `file`: see [`ForceMap::from_csv`].
+    /// The table in `text`, the content of `file`.
     ///
     /// # Errors
-    /// As [`ForceMap::from_csv`].
+    /// The header does not name each of the four columns, but for the lateral force, once, a row is malformed, a pose is missing or there twice, or the forces
+    /// make no table (see [`ForceTable::new`]); with the file, and the line where there is one.
     ///
-    /// Implements: MAP-030, MAP-032, MAP-033, MAP-041.
+    /// Implements: MAP-026, MAP-030, MAP-032, MAP-033, MAP-037, MAP-041.
     pub fn from_csv(text: &str, file: &str) -> Result<ForceTable, Refusal> {
-        Ok(ForceTable::read_csv(text, file, None)?.0)
+        Ok(ForceTable::from_csv_with_notes(text, file, None)?.0)
     }
 
-    /// As [`ForceTable::from_csv`], of a file in this layout, and what a person should know of how the text was read, such as the
-    /// columns that are not used.
+    /// As [`ForceTable::from_csv`], of a file in this layout if the user may state one, and what a person should know of how the text was
+    /// read, such as the columns that are not used.
     ///
     /// ```
-    /// use palpate::csv::Layout;
     /// use palpate::force_map::ForceTable;
     ///
     /// let text = "\"\";depth_mm;lateral_mm;normal_force_n;lateral_force_n;volt\n1;4;0;1,5;0,0;2,25\n";
-    /// let (table, notes) = ForceTable::from_csv_with_notes(text, "gel.csv", &Layout::default())?;
+    /// let (table, notes) = ForceTable::from_csv_with_notes(text, "gel.csv", None)?;
     /// assert_eq!(table.normal().values(), [1.5]);
     /// assert_eq!(notes[0], "column \"volt\" is not used");
     /// # Ok::<(), palpate::refusal::Refusal>(())
     /// ```
     ///
     /// # Errors
-    /// As [`ForceMap::from_csv`]; a layout that states what a map does not have.
+    /// As [`ForceTable::from_csv`]; a layout that states what a map does not have.
     ///
     /// Implements: MAP-041, MAP-044, MAP-046.
     pub fn from_csv_with_notes(
-        text: &str,
-        file: &str,
-        layout: &Layout,
-    ) -> Result<(ForceTable, Vec<String>), Refusal> {
-        ForceTable::read_csv(text, file, Some(layout))
-    }
-
-    fn read_csv(
         text: &str,
         file: &str,
         layout: Option<&Layout>,
@@ -131,7 +80,7 @@ impl ForceTable {
     /// position, m.
     ///
     /// # Errors
-    /// A header or a row as in [`ForceMap::from_csv`]; a step that is not above 0; a pose of the grid without a sample.
+    /// A header or a row as in [`ForceTable::from_csv`]; a step that is not above 0; a pose of the grid without a sample.
     ///
     /// Implements: MAP-080.
     pub fn from_scattered_csv(

@@ -13,17 +13,17 @@
 //! | `json.rs`, `csv.rs` | files |
 //!
 //! ```
-//! use palpate::force_map::ForceMap;
+//! use palpate::force_map::ForceTable;
 //!
-//! // Two measured maps over one depth and x = 0, 2, 4 mm, and the signal of the paper's §2.
+//! // Two measured tables over one depth and x = 0, 2, 4 mm, and the signal of the paper's §2.
 //! let map = |normal: [f64; 3]| {
 //!     let mut text = String::from("depth_mm,lateral_mm,normal_force_n,lateral_force_n\n");
 //!     for (column, normal) in normal.iter().enumerate() {
 //!         text += &format!("4,{},{normal},0\n", 2 * column);
 //!     }
-//!     ForceMap::from_csv(&text, "sweep.csv", "", None)
+//!     ForceTable::from_csv(&text, "sweep.csv")
 //! };
-//! let signal = map([1.75, 1.5, 1.5])?.signal(&map([1.5, 1.5, 1.5])?)?;
+//! let signal = map([1.75, 1.5, 1.5])?.minus(&map([1.5, 1.5, 1.5])?)?;
 //! assert_eq!(signal.row(0.004)?.normal, [0.25, 0.0, 0.0]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -225,7 +225,7 @@ impl ForceMap {
     /// Reads the map at `path`: measured forces if its name ends in `.csv`, else JSON.
     ///
     /// # Errors
-    /// As [`ForceMap::from_csv`] and [`ForceMap::from_json`]; a file that cannot be read as UTF-8.
+    /// As [`ForceTable::from_csv`], [`ForceMap::new`] and [`ForceMap::from_json`]; a file that cannot be read as UTF-8.
     ///
     /// Implements: MAP-026.
     pub fn read(path: &Path) -> Result<ForceMap, Refusal> {
@@ -244,9 +244,14 @@ impl ForceMap {
     ) -> Result<(ForceMap, Vec<String>), Refusal> {
         let is_csv = |extension: &std::ffi::OsStr| extension.eq_ignore_ascii_case("csv");
         let is_csv = path.extension().is_some_and(is_csv);
-        crate::file::read(path, |text, file| match is_csv {
-            true => ForceMap::read_csv(text, file, ("", None), layout),
-            false => Ok((ForceMap::from_json(text, file)?, Vec::new())),
+        crate::file::read(path, |text, file| {
+            if !is_csv {
+                return Ok((ForceMap::from_json(text, file)?, Vec::new()));
+            }
+            let (forces, notes) = ForceTable::from_csv_with_notes(text, file, layout)?;
+            let source = Source::Measured(Measurement::new(file, ""));
+            let map = ForceMap::new(source, None, forces);
+            Ok((map.map_err(|refusal| refusal.in_file(file))?, notes))
         })
     }
 

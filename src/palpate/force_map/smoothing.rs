@@ -194,9 +194,7 @@ mod tests {
     #[test]
     fn the_normal_force_alone_is_smoothed_as_beside_another() {
         let both = table(&steps(9), &[1.0, 4.0, 2.0, 8.0, 5.0, 7.0, 1.0, 0.0, 3.0]);
-        let (depths, laterals) = (both.depths().to_vec(), both.laterals().to_vec());
-        let one = ForceTable::of_channels(depths, laterals, both.normal().clone(), None).unwrap();
-        let [one, both] = [one, both].map(|table| table.smoothed(1e-3).unwrap());
+        let [one, both] = [both.of_normal(), both].map(|table| table.smoothed(1e-3).unwrap());
         assert_eq!(
             (one.table.normal(), one.table.lateral()),
             (both.table.normal(), None)

@@ -309,8 +309,7 @@ fn a_signal_is_the_map_minus_its_reference() {
 #[test]
 fn a_lateral_force_that_was_not_measured_is_absent_from_all_that_follows() {
     let whole = table();
-    let (depths, laterals) = (whole.depths().to_vec(), whole.laterals().to_vec());
-    let one = ForceTable::of_channels(depths, laterals, whole.normal().clone(), None).unwrap();
+    let one = whole.of_normal();
     assert_ne!(one, whole);
     for (one, whole) in [
         (one.minus(&one), whole.minus(&whole)),

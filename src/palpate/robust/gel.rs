@@ -180,38 +180,8 @@ const CHANGES: [fn(&mut PhantomParts, f64); 5] = [
 type Sides = (Phantom, Phantom, f64);
 
 impl GelChanges {
-    /// Those of the gel of `reference`, without its inclusions, under the probe at `depth` (m); none of a measured map without a
-    /// phantom. A change that the gel or the probe does not allow is made in the other direction alone, or left out.
-    ///
-    /// # Errors
-    /// As [`Model::sweep`].
-    pub fn new(
-        reference: &ForceMap,
-        depth: f64,
-        uncertainty: &GelUncertainty,
-    ) -> Result<Option<GelChanges>, FemError> {
-        GelChanges::over(reference, &[depth], uncertainty)
-    }
-
-    /// As [`GelChanges::new`], at the rows of `reference` that the depths of the samples of `records` are between.
-    ///
-    /// # Errors
-    /// As [`Model::map`].
-    ///
-    /// Implements: ROB-080.
-    pub fn along(
-        reference: &ForceMap,
-        records: &[&Record],
-        uncertainty: &GelUncertainty,
-    ) -> Result<Option<GelChanges>, FemError> {
-        GelChanges::over(
-            reference,
-            &GelChanges::depths_along(reference, records),
-            uncertainty,
-        )
-    }
-
-    /// The depths, m, at which [`GelChanges::along`] computes: those of the same depths are the same.
+    /// The depths for [`GelChanges::new`], m, under samples with depths of their own: the rows of `reference` that those of `records` are
+    /// between.
     ///
     /// Implements: ROB-080.
     pub fn depths_along(reference: &ForceMap, records: &[&Record]) -> Vec<f64> {
@@ -226,13 +196,15 @@ impl GelChanges {
         thinned(rows, MOST_DEPTHS)
     }
 
-    /// As [`GelChanges::new`], at all `depths` (m, increasing) under samples with depths of their own.
+    /// Those of the gel of `reference`, without its inclusions, under the probe at `depths` (m, increasing): one, or all of
+    /// [`GelChanges::depths_along`]; none of a measured map without a phantom. A change that the gel or the probe does not allow is made in
+    /// the other direction alone, or left out.
     ///
     /// # Errors
-    /// As [`Model::map`].
+    /// As [`Model::sweep`].
     ///
     /// Implements: ROB-080.
-    pub fn over(
+    pub fn new(
         reference: &ForceMap,
         depths: &[f64],
         uncertainty: &GelUncertainty,

@@ -19,7 +19,7 @@ use crate::detect::Decision;
 use crate::fem::{Contact, Model};
 use crate::force::Force;
 use crate::force_map::tests::{measured, table_of};
-use crate::force_map::{ForceMap, ForceTable, Hypotheses, Matrix};
+use crate::force_map::{ForceMap, ForceTable, Hypotheses};
 use crate::phantom::Phantom;
 use crate::stats::random::Generator;
 use crate::trace::contact::wrong_level;
@@ -41,6 +41,15 @@ fn noise(samples: usize, trial: u64) -> Vec<f64> {
     let mut noise = vec![0.0; samples];
     Generator::new(1, 0).normals(trial, 0, &mut noise);
     noise
+}
+
+/// Forces in noise of this standard deviation, N, of these trials.
+fn noisy(forces: Force<Vec<f64>>, sd: f64, [lateral, normal]: [u64; 2]) -> Force<Vec<f64>> {
+    let channels = forces.zip(Force::new(lateral, normal));
+    channels.map(|(channel, trial)| {
+        let pairs = channel.iter().zip(noise(channel.len(), trial));
+        pairs.map(|(force, noise)| force + sd * noise).collect()
+    })
 }
 
 // SciPy's multivariate_normal.logpdf with dense covariances, plus 2 ln 2π.
@@ -497,7 +506,8 @@ fn bank() -> Bank {
 #[test]
 fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
     let bank = bank();
-    let changes = GelChanges::new(bank.reference(), bank.depth(), &GelUncertainty::default());
+    let (depths, usual) = ([bank.depth()], GelUncertainty::default());
+    let changes = GelChanges::new(bank.reference(), &depths, &usual);
     let changes = changes.unwrap().unwrap();
     // Each change of the paper's gel is possible in both directions.
     assert_eq!((changes.gel.len(), changes.support.len()), (5, 2));
@@ -508,16 +518,9 @@ fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
             usize::MAX => bank.reference().table(),
             map => bank.maps()[map].table(),
         };
-        let forces = table.sweep(bank.depth(), &over).unwrap();
-        let noisy = |channel: Vec<f64>, trial| -> Vec<f64> {
-            channel
-                .iter()
-                .zip(noise(161, trial))
-                .map(|(f, n)| scale * (f + 0.02 * n))
-                .collect()
-        };
-        let (lateral, normal) = (noisy(forces.lateral, 5), noisy(forces.normal, 6));
-        Record::new("sweep", &over, Force::new(&lateral, &normal)).unwrap()
+        let forces = noisy(table.sweep(bank.depth(), &over).unwrap(), 0.02, [5, 6]);
+        let forces = forces.map(|channel| channel.iter().map(|f| scale * f).collect::<Vec<_>>());
+        Record::new("sweep", &over, forces.as_deref()).unwrap()
     };
     let judge = |record: &Record| {
         let sweep = at_place(&bank, record, Some(&changes));
@@ -665,11 +668,7 @@ fn the_pairs_that_count_are_of_the_whole_bank() {
     assert_eq!(priors, [0.4, 0.4, 0.2]);
     // A sweep of the left half says nothing of an inclusion at the right, and something of the others.
     let half: Vec<f64> = (0..=64).map(|at| 1.25e-4 * f64::from(at) - 8e-3).collect();
-    let channel = |(level, trial)| -> Vec<f64> {
-        let noise = noise(65, trial).into_iter();
-        noise.map(|noise| level + 0.02 * noise).collect()
-    };
-    let forces = Force::new((0.0, 10), (1.0, 9)).map(channel);
+    let forces = noisy(Force::new(vec![0.0; 65], vec![1.0; 65]), 0.02, [10, 9]);
     let record = Record::new("half", &half, forces.as_deref()).unwrap();
     let sweep = at_place(&bank, &record, None);
     let (answer, _) = RobustQuestion::default()
@@ -712,16 +711,7 @@ fn explained(forces: &dyn Fn(f64) -> [f64; 2]) -> (RobustAnswer, Vec<Force<Vec<f
     };
     let truth: Vec<_> = counts.map(|count| series(count, forces)).into();
     let records = (0..).zip(&truth).map(|(sweep, truth)| {
-        let trials = Force::new(2 * sweep, 2 * sweep + 1);
-        let noisy = |(channel, trial): (&[f64], u64)| -> Vec<f64> {
-            let noise = noise(channel.len(), 20 + trial);
-            channel
-                .iter()
-                .zip(noise)
-                .map(|(f, n)| f + 0.02 * n)
-                .collect()
-        };
-        let mut noisy = truth.as_deref().zip(trials).map(noisy);
+        let mut noisy = noisy(truth.clone(), 0.02, [20 + 2 * sweep, 21 + 2 * sweep]);
         // A glitch in the middle of the first sweep.
         noisy.normal[80] += if sweep == 0 { 30.0 } else { 0.0 };
         Record::new("sweep", &positions(truth.normal.len()), noisy.as_deref()).unwrap()
@@ -824,7 +814,7 @@ fn among_several_diameters_the_amplitude_is_surer() {
 fn what_is_known_of_the_gel_is_not_solved() {
     let bank = bank();
     let of = |uncertainty: GelUncertainty| {
-        let changes = GelChanges::new(bank.reference(), bank.depth(), &uncertainty);
+        let changes = GelChanges::new(bank.reference(), &[bank.depth()], &uncertainty);
         changes.unwrap().unwrap()
     };
     let none = of(GelUncertainty::default().beside(&[Part::Gel, Part::Support]));
@@ -855,7 +845,7 @@ fn a_reference_sweep_tells_of_the_gel_and_a_light_one_of_the_surface() {
     let (none, disc) = (map("none"), map("4.6"));
     let depths = [1e-3, 4e-3];
     let changes = depths.map(|depth| {
-        let changes = GelChanges::new(&none, depth, &GelUncertainty::default());
+        let changes = GelChanges::new(&none, &[depth], &GelUncertainty::default());
         changes.unwrap().unwrap()
     });
     let zeros = vec![0.0; 161];
@@ -1009,16 +999,10 @@ fn a_record_of_one_channel_is_judged_as_if_the_other_had_infinite_noise() {
 fn maps_of_the_normal_force_alone_judge_a_record_of_it() {
     let bank = bank();
     let over = positions(81);
-    let table = |map: &ForceMap, has_lateral: bool| {
-        let (depth, laterals) = (bank.depth(), map.table().laterals());
-        let Force { lateral, normal } = map.table().row(depth).unwrap();
-        let matrix = |row: &[f64]| Matrix::new(row.len(), row.to_vec()).unwrap();
-        let lateral = has_lateral.then(|| matrix(lateral));
-        ForceTable::of_channels(vec![depth], laterals.to_vec(), matrix(normal), lateral).unwrap()
-    };
-    let pair = [bank.reference(), &bank.maps()[7]];
-    let [maps, alone] = [true, false].map(|has_lateral| pair.map(|map| table(map, has_lateral)));
+    let table = |map: &ForceMap| map.table().at_depths(&[bank.depth()]).unwrap();
+    let maps = [bank.reference(), &bank.maps()[7]].map(table);
     let maps = [&maps[0], &maps[1]];
+    let alone = maps.map(ForceTable::of_normal);
     let judged = |[without, with]: [&ForceTable; 2], map: &ForceTable, has_lateral: bool| {
         let forces = map.sweep(bank.depth(), &over).unwrap();
         let pairs = forces.normal.iter().zip(noise(81, 3));
@@ -1076,15 +1060,8 @@ fn trembling(bank: &Bank, has_disc: bool, trial: u64) -> Record {
         false => bank.reference().table(),
     };
     let forces = table.path(&depths, &over).unwrap();
-    let noisy = |channel: Vec<f64>, trial| -> Vec<f64> {
-        let pairs = channel.iter().zip(noise(channel.len(), trial));
-        pairs.map(|(force, noise)| force + 0.02 * noise).collect()
-    };
-    let (lateral, normal) = (
-        noisy(forces.lateral, 2 * trial),
-        noisy(forces.normal, 2 * trial + 1),
-    );
-    Record::along("path", &over, &depths, Force::new(&lateral, &normal)).unwrap()
+    let forces = noisy(forces, 0.02, [2 * trial, 2 * trial + 1]);
+    Record::along("path", &over, &depths, forces.as_deref()).unwrap()
 }
 
 // Verifies: ROB-081, ROB-083, ROB-080, BNK-081, BNK-020.
@@ -1108,7 +1085,8 @@ fn passes_whose_depth_trembles_are_judged_by_what_the_maps_say_of_it() {
                 .collect();
         }
         let all: Vec<&Record> = passes.iter().collect();
-        let changes = GelChanges::along(bank.reference(), &all, &GelUncertainty::default());
+        let depths = GelChanges::depths_along(bank.reference(), &all);
+        let changes = GelChanges::new(bank.reference(), &depths, &GelUncertainty::default());
         let changes = changes.unwrap();
         let sweeps: Vec<_> = (passes.iter().zip([2.6e-3, 3.8e-3]))
             .map(|(record, depth)| RobustSweep {
@@ -1181,8 +1159,9 @@ fn passes_whose_depth_trembles_are_judged_by_what_the_maps_say_of_it() {
         Force::new(&zeros(161), &zeros(161)),
     );
     let record = record.unwrap();
-    let all = GelChanges::along(bank.reference(), &[&record], &GelUncertainty::default());
-    let own = GelChanges::new(bank.reference(), 2.9e-3, &GelUncertainty::default());
+    let depths = GelChanges::depths_along(bank.reference(), &[&record]);
+    let [all, own] = [&depths[..], &[2.9e-3]]
+        .map(|depths| GelChanges::new(bank.reference(), depths, &GelUncertainty::default()));
     let (all, own) = (all.unwrap().unwrap(), own.unwrap().unwrap());
     for (all, own) in all
         .gel
@@ -1234,11 +1213,7 @@ fn a_spike_near_an_end_is_a_glitch_and_no_air() {
     let bank = bank();
     let over = positions(161);
     let forces = bank.maps()[7].table().sweep(bank.depth(), &over).unwrap();
-    let noisy = |(channel, trial): (Vec<f64>, u64)| -> Vec<f64> {
-        let pairs = channel.iter().zip(noise(161, trial));
-        pairs.map(|(force, noise)| force + 0.05 * noise).collect()
-    };
-    let mut forces = forces.zip(Force::new(31, 32)).map(noisy);
+    let mut forces = noisy(forces, 0.05, [31, 32]);
     forces.normal[10] = -20.0;
     let record = Record::new("sweep", &over, forces.as_deref()).unwrap();
     let sweep = at_place(&bank, &record, None);

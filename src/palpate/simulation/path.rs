@@ -1,6 +1,6 @@
 //! Where the probe is sent, and when samples are taken.
 
-use crate::csv::{Column, Layout, Rows};
+use crate::csv::{Column, Rows};
 use crate::refusal::Refusal;
 use crate::trace::Record;
 
@@ -69,7 +69,7 @@ impl Path {
         let found = format!("{rate} samples a second");
         Refusal::state(found, "give a rate above 0").when(rate <= 0.0)?;
         let read = || {
-            let table = Rows::parse_as(text, COLUMNS, EXPECTED, &Layout::default())?;
+            let table = Rows::parse(text, COLUMNS, EXPECTED)?;
             for pair in table.rows.windows(2) {
                 let [(_, before), (line, after)] = [pair[0], pair[1]];
                 let found = format!("time {} s after {} s", after[0], before[0]);

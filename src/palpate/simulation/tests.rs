@@ -1,7 +1,7 @@
 //! Paths, hands and sensors against what they should do.
 
 use super::*;
-use crate::force_map::Matrix;
+use crate::force_map::tests::table_of;
 use crate::hid::simulated::{Handle, Mechanics};
 use crate::trace::{Record, Trace};
 use palpate_asserts::assert_near;
@@ -10,18 +10,10 @@ use palpate_asserts::assert_near;
 fn spring(k: f64) -> ForceTable {
     let depths: Vec<f64> = (0..=10).map(|row| 1e-3 * f64::from(row)).collect();
     let laterals: Vec<f64> = (-10..=10).map(|x| 1e-3 * f64::from(x)).collect();
-    let normal = |row: usize, column: usize| k * depths[row] * (1.0 + 10.0 * laterals[column]);
-    let of = |share: f64| {
-        Matrix::from_fn(depths.len(), laterals.len(), |row, column| {
-            share * normal(row, column)
-        })
-    };
-    ForceTable::new(
-        depths.clone(),
-        laterals.clone(),
-        Force::new(of(0.25), of(1.0)),
-    )
-    .unwrap()
+    table_of(&depths, &laterals, |depth, x| {
+        let normal = k * depth * (1.0 + 10.0 * x);
+        [0.25 * normal, normal]
+    })
 }
 
 fn simulation<'a>(gel: &'a ForceTable, path: &'a Path) -> Simulation<'a> {
@@ -505,8 +497,5 @@ fn a_record_is_read_back_as_it_was_written() {
     let deep = Path::passes(&[11e-3], [-2e-3, 2e-3], 10e-3, 100.0).unwrap();
     let error = simulation(&gel, &deep).record(1).unwrap_err();
     assert!(error.to_string().contains("outside the map"), "{error}");
-    let normal = gel.normal().clone();
-    let alone =
-        ForceTable::of_channels(gel.depths().to_vec(), gel.laterals().to_vec(), normal, None);
-    assert!(simulation(&alone.unwrap(), &path).record(1).is_err());
+    assert!(simulation(&gel.of_normal(), &path).record(1).is_err());
 }

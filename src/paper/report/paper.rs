@@ -58,9 +58,6 @@ pub const PRINTED_MEANS: [[f64; 4]; 3] = [
     [26.8, 22.8, 22.9, 17.4],
 ];
 
-#[cfg(test)]
-pub use super::tests::table_1::EXPERIMENTS;
-
 /// The parts of a phantom without the names of itself and its layers.
 pub(super) fn unnamed(phantom: &Phantom) -> PhantomParts {
     let mut parts = PhantomParts::from(phantom.clone());

@@ -86,7 +86,7 @@ impl<'a> Asked<'a> {
         for records in together {
             for depths in self.depths_of_gels(records)? {
                 if let Entry::Vacant(entry) = self.changes.entry(bits(&depths)) {
-                    let found = GelChanges::over(reference, &depths, &uncertainty);
+                    let found = GelChanges::new(reference, &depths, &uncertainty);
                     entry.insert(found.map_err(CliError::fem(name))?);
                 }
             }

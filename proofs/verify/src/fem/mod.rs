@@ -132,31 +132,4 @@ mod tests {
         }
         assert!(!Figure::told("", least([])).passes());
     }
-
-    #[test]
-    fn no_figure_depends_on_the_system_s_mathematical_library() {
-        let sources = [
-            include_str!("convergence.rs"),
-            include_str!("cylinder.rs"),
-            include_str!("energy.rs"),
-            include_str!("full_contact.rs"),
-            include_str!("hertz.rs"),
-            include_str!("inclusion.rs"),
-            include_str!("layer.rs"),
-            include_str!("manufactured.rs"),
-            include_str!("paper.rs"),
-            include_str!("patch.rs"),
-            include_str!("problem.rs"),
-        ];
-        for function in [
-            "sin", "cos", "tan", "sin_cos", "atan2", "sinh", "cosh", "tanh", "exp", "ln", "log2",
-            "log10", "powf", "cbrt", "hypot", "norm", "mul_add",
-        ] {
-            let call = format!(".{function}(");
-            assert!(
-                !sources.iter().any(|source| source.contains(&call)),
-                "{call}"
-            );
-        }
-    }
 }

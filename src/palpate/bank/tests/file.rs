@@ -53,12 +53,7 @@ fn what_is_no_bank_is_refused() {
     let cut = |map: &ForceMap| map.at_laterals(&[0.0, 5e-4]).unwrap();
     let narrow = "maps[1]: its lateral positions are not those of the reference; give the same";
     refused(&|maps| maps[1] = cut(&maps[1]), narrow);
-    let one_channel = |map: &ForceMap| {
-        let table = map.table();
-        let axes = (table.depths().to_vec(), table.laterals().to_vec());
-        let table = ForceTable::of_channels(axes.0, axes.1, table.normal().clone(), None);
-        measured(map.phantom().cloned(), table.unwrap())
-    };
+    let one_channel = |map: &ForceMap| measured(map.phantom().cloned(), map.table().of_normal());
     let one = "maps[1]: the map has no lateral forces, which are needed here";
     refused(&|maps| maps[1] = one_channel(&maps[1]), one);
     assert_error(

@@ -35,7 +35,7 @@ fn samples(record: &Record) -> Vec<Sample> {
 fn watched(question: &WatchQuestion, samples: impl IntoIterator<Item = Sample>) -> Watcher {
     let mut watcher = Watcher::new(&all(), question).unwrap();
     for (x, lateral, normal) in samples {
-        watcher.push(x, lateral, normal).unwrap();
+        watcher.push(x, None, lateral, normal).unwrap();
     }
     watcher
 }
@@ -220,7 +220,7 @@ fn an_inclusion_is_told_before_the_sweep_is_over_and_stays_told() {
     let mut watcher = watched(&question(USUAL), None);
     let mut told = None;
     for (at, (x, lateral, normal)) in (1..).zip(record) {
-        watcher.push(x, lateral, normal).unwrap();
+        watcher.push(x, None, lateral, normal).unwrap();
         let found = watcher.answer().unwrap();
         if told.is_none() && found.decision.is_some() {
             told = Some(at);
@@ -336,7 +336,7 @@ fn a_record_that_no_hypothesis_explains_is_not_answered() {
         Some(Decision::NoInclusion)
     );
     for (x, lateral, normal) in air.iter().rev().take(40).copied() {
-        watcher.push(x, lateral, normal).unwrap();
+        watcher.push(x, None, lateral, normal).unwrap();
     }
     let found = watcher.answer().unwrap();
     assert_eq!(
@@ -378,7 +378,7 @@ fn a_lateral_force_of_the_other_sign_hides_no_inclusion() {
         for (at, (x, lateral, normal)) in (0..).zip(exact.iter().copied()) {
             let lateral = lateral.map(|force| sign * (force + 0.05 * noise(0, at)));
             watcher
-                .push(x, lateral, normal + 0.4 * noise(1, at))
+                .push(x, None, lateral, normal + 0.4 * noise(1, at))
                 .unwrap();
         }
         watcher.answer().unwrap()
@@ -454,7 +454,7 @@ fn an_inclusion_is_withheld_once_every_place_is_excluded() {
         for (at, (with, without)) in with.iter().zip(&without).enumerate() {
             let normal = without.2 + share * (with.2 - without.2) + sd * noise[2 * at];
             let lateral = Some(sd * noise[2 * at + 1]);
-            watcher.push(with.0, lateral, normal).unwrap();
+            watcher.push(with.0, None, lateral, normal).unwrap();
         }
         let found = watcher.answer().unwrap();
         // No hypothesis explains both.
@@ -473,50 +473,24 @@ fn an_inclusion_is_withheld_once_every_place_is_excluded() {
 #[test]
 fn what_cannot_be_watched_is_refused() {
     let (bank, usual) = (all(), question(USUAL));
-    let refused = |question: WatchQuestion| Watcher::new(&bank, &question).unwrap_err().to_string();
-    let unknown = [Unknown::Offset, Unknown::Variance];
-    assert!(
-        refused(WatchQuestion {
-            unknown: unknown.to_vec(),
-            ..usual.clone()
-        })
-        .contains("cannot be estimated")
-    );
-    assert!(
-        refused(WatchQuestion {
-            noise_sd: Force::new(SD, 0.0),
-            ..usual.clone()
-        })
-        .contains("noise_sd_normal_n")
-    );
-    assert!(
-        refused(WatchQuestion {
-            noise_sd: Force::new(1e-60, SD),
-            ..usual.clone()
-        })
-        .contains("1e50")
-    );
-    assert!(
-        refused(WatchQuestion {
-            prior_h1: 1.0,
-            ..usual.clone()
-        })
-        .contains("prior_h1")
-    );
-    assert!(
-        refused(WatchQuestion {
-            prior: Some(vec![1.0]),
-            ..usual.clone()
-        })
-        .contains("prior")
-    );
-    assert!(
-        refused(WatchQuestion {
-            prior: Some(vec![0.1; 40]),
-            ..usual.clone()
-        })
-        .contains("prior")
-    );
+    type Change = fn(&mut WatchQuestion);
+    let changes: [(Change, &str); 6] = [
+        (
+            |of| of.unknown = vec![Unknown::Offset, Unknown::Variance],
+            "cannot be estimated",
+        ),
+        (|of| of.noise_sd.normal = 0.0, "noise_sd_normal_n"),
+        (|of| of.noise_sd.lateral = 1e-60, "1e50"),
+        (|of| of.prior_h1 = 1.0, "prior_h1"),
+        (|of| of.prior = Some(vec![1.0]), "prior"),
+        (|of| of.prior = Some(vec![0.1; 40]), "prior"),
+    ];
+    for (change, words) in changes {
+        let mut question = usual.clone();
+        change(&mut question);
+        let error = Watcher::new(&bank, &question).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    }
     let single = Bank::new(map(None, &[4e-3]), maps()).unwrap();
     let question = WatchQuestion {
         unknown: vec![Unknown::Depth],
@@ -535,7 +509,7 @@ fn what_cannot_be_watched_is_refused() {
         (0.0, 0.0, 1e60),
         (f64::NAN, 0.0, f64::INFINITY),
     ] {
-        assert!(watcher.push(x, Some(lateral), normal).is_err());
+        assert!(watcher.push(x, None, Some(lateral), normal).is_err());
     }
     let found = watcher.answer().unwrap();
     assert_eq!(
@@ -557,7 +531,7 @@ fn what_cannot_be_watched_is_refused() {
         },
     )
     .unwrap();
-    watcher.push(0.0, Some(0.0), 1.0).unwrap();
+    watcher.push(0.0, None, Some(0.0), 1.0).unwrap();
 }
 
 /// Of so many sweeps back and forth over a gel with the inclusion of a map, or none, in noise of 0.4 N: how many are answered
@@ -581,7 +555,7 @@ fn answers(trials: u64, map: Option<usize>) -> [u64; 3] {
         for (at, x) in path.iter().enumerate() {
             let normal = 1.1 * exact.normal[at] + 0.2 + sd * noise[2 * at];
             let lateral = Some(sd * noise[2 * at + 1]);
-            watcher.push(*x, lateral, normal).unwrap();
+            watcher.push(*x, None, lateral, normal).unwrap();
             let there = map.and_then(|map| watcher.found.evidence().nth(map));
             is_excluded |= there.is_some_and(|of| watcher.is_excluded(of));
         }
@@ -645,17 +619,18 @@ fn samples_at_depths_of_their_own_have_the_last_answer_of_the_whole_record() {
             let mut watcher = Watcher::new(&bank, &question(unknown)).unwrap();
             let depths = record.depths().unwrap();
             for ((x, lateral, normal), depth) in samples(&record).into_iter().zip(depths) {
-                watcher.push_at(x, Some(*depth), lateral, normal).unwrap();
+                watcher.push(x, Some(*depth), lateral, normal).unwrap();
             }
             let found = watcher.answer().unwrap();
             let off = (found.theta - expected.theta_mixture).abs();
             assert!(off < 1e-9, "{unknown:?}: {off:e}");
             // Too deep for the bank, and no depth at all.
-            watcher.push_at(0.0, Some(4.5e-3), Some(0.0), 1.0).unwrap();
-            watcher
-                .push_at(0.0, Some(f64::NAN), Some(0.0), 1.0)
-                .unwrap();
-            let error = watcher.push(0.0, Some(0.0), 1.0).unwrap_err().to_string();
+            watcher.push(0.0, Some(4.5e-3), Some(0.0), 1.0).unwrap();
+            watcher.push(0.0, Some(f64::NAN), Some(0.0), 1.0).unwrap();
+            let error = watcher
+                .push(0.0, None, Some(0.0), 1.0)
+                .unwrap_err()
+                .to_string();
             assert!(error.contains("the bank has several depths"), "{error}");
             let after = watcher.answer().unwrap();
             assert_eq!((after.counts.outside, after.counts.missing), (1, 1));

@@ -233,8 +233,7 @@ fn a_lopsided_inclusion_on_the_axis_is_solved_on_either_side() {
 fn forces_grow_with_moduli_and_with_lengths() {
     let phantom = off_centre(2.6, 2.0);
     let stiffer = phantom.changed(|parts| {
-        let layers = parts.layers.iter_mut().map(|of| &mut of.material);
-        let materials = layers.chain(parts.inclusions.iter_mut().map(|of| &mut of.material));
+        let materials = parts.materials_mut();
         materials.for_each(|of| of.youngs_modulus *= 4.0);
     });
     let larger = phantom.changed(|parts| {
@@ -399,12 +398,7 @@ fn the_vtu_file_holds_the_mesh_and_the_stresses() {
     let pose = pose(2e-3, 0.0);
     let solution = model.solve(pose).unwrap();
     let text = model.vtu(&solution).unwrap();
-    let array = |name: &str| -> Vec<f64> {
-        let (_, rest) = text.split_once(&format!("Name=\"{name}\"")).expect(name);
-        let body = rest.split_once('>').unwrap().1.split_once('<').unwrap().0;
-        let numbers = body.split_whitespace().map(|word| word.parse().unwrap());
-        numbers.collect()
-    };
+    let array = |name: &str| super::vtu::array(&text, name);
     let (nodes, elements) = (model.mesh().nodes.len(), model.mesh().regions.len());
     assert_eq!(array("position_m").len(), 3 * nodes);
     assert_eq!(array("connectivity").len(), 6 * elements);

@@ -4,7 +4,7 @@ use super::{Contact, Model, builtin, pose};
 use crate::phantom::Strain;
 
 /// The numbers of an array.
-fn array(text: &str, name: &str) -> Vec<f64> {
+pub fn array(text: &str, name: &str) -> Vec<f64> {
     let (_, rest) = text.split_once(&format!("Name=\"{name}\"")).expect(name);
     let body = rest.split_once('>').unwrap().1.split_once('<').unwrap().0;
     body.split_whitespace()

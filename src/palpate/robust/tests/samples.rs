@@ -82,15 +82,11 @@ fn noise_of_a_tremor(bank: &Bank, is_zeroed: bool, offset: f64, glitch: f64) -> 
         of_pass + 0.05e-3 * (1.9 * at as f64).sin()
     };
     let depths: Vec<f64> = (0..over.len()).map(depth).collect();
-    let forces = bank.reference().table().path(&depths, &over).unwrap();
-    let noisy = |channel: Vec<f64>, offset: f64, trial| -> Vec<f64> {
-        let pairs = channel.iter().zip(noise(channel.len(), trial));
-        pairs.map(|(force, n)| force + offset + 0.005 * n).collect()
-    };
-    let lateral = noisy(forces.lateral, 0.0, 0);
-    let mut normal = noisy(forces.normal, offset, 1);
-    normal[241] += glitch;
-    let record = Record::along("path", &over, &depths, Force::new(&lateral, &normal)).unwrap();
+    let mut forces = bank.reference().table().path(&depths, &over).unwrap();
+    forces.normal.iter_mut().for_each(|force| *force += offset);
+    let mut forces = noisy(forces, 0.005, [0, 1]);
+    forces.normal[241] += glitch;
+    let record = Record::along("path", &over, &depths, forces.as_deref()).unwrap();
     let question = RobustQuestion {
         is_zeroed,
         ..RobustQuestion::default()

@@ -1,6 +1,24 @@
 //! Table 1, and files of its form.
 
 use super::*;
+use crate::report::paper::PRINTED_MEANS;
+
+/// Table 1, typed a second time: one row a subject, one column an inclusion. It shows a slip of the pen in the table that is used.
+#[rustfmt::skip]
+const TYPED_AGAIN: [(&str, [[u32; 4]; 10]); 3] = [
+    ("direct contact", [
+        [30, 28, 27, 27], [30, 30, 28, 23], [30, 29, 20, 21], [28, 25, 18, 16], [27, 26, 23, 19],
+        [30, 30, 27, 17], [23, 19, 18, 13], [30, 30, 30, 19], [30, 30, 29, 23], [30, 28, 27, 22],
+    ]),
+    ("FEM data", [
+        [30, 30, 30, 21], [30, 30, 29, 25], [30, 29, 28, 16], [28, 29, 24, 20], [29, 25, 20, 17],
+        [29, 29, 27, 15], [27, 23, 18, 15], [30, 30, 27, 20], [29, 24, 21, 16], [30, 28, 29, 24],
+    ]),
+    ("measured data", [
+        [30, 22, 24, 18], [30, 28, 28, 21], [28, 27, 19, 15], [25, 19, 19, 21], [29, 24, 23, 18],
+        [26, 21, 23, 17], [17, 15, 19, 18], [29, 26, 26, 13], [26, 21, 22, 15], [28, 25, 26, 18],
+    ]),
+];
 
 // Verifies: PSY-020.
 #[test]
@@ -9,11 +27,7 @@ fn table_1_is_built_in() {
     let depths: Vec<f64> = table.inclusions().iter().map(|i| i.depth).collect();
     assert_eq!(depths, [2.6e-3, 4.6e-3, 6.6e-3, 8.6e-3]);
     // The means that the paper prints below each experiment, with one decimal.
-    for (condition, printed) in table.conditions().iter().zip([
-        [28.8, 27.5, 24.7, 20.0],
-        [29.2, 27.7, 25.3, 18.9],
-        [26.8, 22.8, 22.9, 17.4],
-    ]) {
+    for (condition, printed) in table.conditions().iter().zip(PRINTED_MEANS) {
         assert_eq!(condition.subjects.len(), 10);
         for (column, printed) in printed.into_iter().enumerate() {
             let (correct, trials) = condition.pooled(column);
@@ -22,16 +36,14 @@ fn table_1_is_built_in() {
     }
 }
 
-// The report keeps the same table: a slip of the pen in one of them shows.
 // Verifies: PSY-020.
 #[test]
-fn the_report_has_the_same_table() {
-    use crate::report::paper::EXPERIMENTS;
+fn table_1_is_that_of_a_second_typist() {
     let table = AnswerTable::paper().unwrap();
-    for (condition, experiment) in table.conditions().iter().zip(&EXPERIMENTS) {
-        assert_eq!(condition.name, experiment.name);
+    for (condition, (name, correct)) in table.conditions().iter().zip(TYPED_AGAIN) {
+        assert_eq!(condition.name, name);
         let subjects: Vec<&[u32]> = condition.subjects.iter().map(|s| &s.correct[..]).collect();
-        assert_eq!(subjects, experiment.correct);
+        assert_eq!(subjects, correct);
     }
 }
 

@@ -172,7 +172,7 @@ fn the_figure_shows_every_gamma() {
 #[test]
 fn an_inclusion_without_a_signal_is_left_out_of_the_disturbances() {
     let mut run = paper_run();
-    let changes = GelChanges::new(&run.reference, 4e-3, &GelUncertainty::NONE);
+    let changes = GelChanges::new(&run.reference, &[4e-3], &GelUncertainty::NONE);
     run.changes = changes.unwrap();
     run.maps[0] = triangle("2.6", 0.0);
     let figures = made(&run).figures;
@@ -198,7 +198,7 @@ fn a_figure_shows_what_disturbances_leave() {
     };
     assert!(shown(&run).is_none());
     // Nothing is uncertain of the gel.
-    let changes = GelChanges::new(&run.reference, 4e-3, &GelUncertainty::NONE);
+    let changes = GelChanges::new(&run.reference, &[4e-3], &GelUncertainty::NONE);
     run.changes = changes.unwrap();
     let figure = shown(&run).unwrap();
     let list = between(&figure.alt, "the deepest inclusion: ", ". A dashed");

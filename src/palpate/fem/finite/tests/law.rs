@@ -8,6 +8,7 @@ use crate::fem::Mesh;
 use crate::fem::element::{CORNERS, NODES, StiffnessRule, stress};
 use crate::fem::tests::off_centre;
 use crate::phantom::{Material, Phantom};
+use crate::stats::tails::halved;
 use palpate_asserts::assert_near;
 
 // Verifies: FIN-003.
@@ -73,15 +74,7 @@ fn plane_strain_compression_has_its_closed_form() {
     );
     let squeezed = 0.6;
     let across = |wide: f64| mu * (wide * wide - 1.0) + lambda * libm::log(squeezed * wide);
-    let (mut low, mut high) = (1.0, 2.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if across(middle) < 0.0 {
-            low = middle
-        } else {
-            high = middle
-        }
-    }
+    let [low, _] = halved(60, [1.0, 2.0], |wide| Ok::<_, ()>(across(wide) < 0.0)).unwrap();
     let pressure = lambda * libm::log(squeezed * low);
     let stress = mu * squeezed + (pressure - mu) / squeezed;
 

@@ -7,6 +7,7 @@ use super::{finite, pose, sphere};
 use crate::fem::element::{NODES, StiffnessRule};
 use crate::fem::{Contact, Mesh, Model};
 use crate::phantom::{Material, Strain};
+use crate::stats::tails::halved;
 
 // Verifies: FEM-081, PHA-033.
 #[test]
@@ -65,16 +66,9 @@ fn a_revolved_gel_stretched_alike_everywhere_has_no_force_inside() {
 /// radius a by bisection of d = a/2 ln((R + a)/(R − a)).
 fn sneddon(depth: f64) -> f64 {
     let logarithm = |a: f64| libm::log((1.0 + a) / (1.0 - a));
-    let (mut low, mut high) = (0.0, 0.999);
-    for _ in 0..60 {
-        let a = 0.5 * (low + high);
-        if 0.5 * a * logarithm(a) < depth {
-            low = a
-        } else {
-            high = a
-        }
-    }
-    0.5 * (1.0 + low * low) * logarithm(low) - low
+    let is_less = |a: f64| Ok::<_, ()>(0.5 * a * logarithm(a) < depth);
+    let [a, _] = halved(60, [0.0, 0.999], is_less).unwrap();
+    0.5 * (1.0 + a * a) * logarithm(a) - a
 }
 
 /// By how much a layer that is bonded below is stiffer than a half-space, to the fourth power of χ = √(R d)/h (Dimitriadis et al.
