@@ -9,13 +9,13 @@ mod paths;
 
 use std::collections::BTreeMap;
 
-use families::{DEPTH, Ends, GELS, Happens, MOTIONS, SINES, nothing, plain};
+use families::{DEPTH, Ends, GELS, Happens, MOTIONS, SEVERAL, SINES, nothing, plain};
 use palpate::bank::{Bank, BankPlan};
 use palpate::detect::Decision;
 use palpate::fem::{Contact, Model};
 use palpate::force::Force;
 use palpate::force_map::{ForceMap, ForceTable};
-use palpate::phantom::{Phantom, PhantomParts};
+use palpate::phantom::{Phantom, PhantomParts, Support};
 use palpate::robust::{
     BankHypotheses, GelChanges, GelUncertainty, RobustAnswer, RobustDetector, RobustPlace,
     RobustQuestion, RobustSweep,
@@ -249,8 +249,19 @@ fn false_answers_are_rare_in_every_family() {
             .into_iter()
             .map(|(name, gel)| (name, gel, calm)),
     );
-    for (name, happens, ends) in SINES {
+    for (name, happens, ends) in SINES.iter().chain(SEVERAL) {
         families.push(((*name).into(), own.clone(), (*happens, *ends)));
+    }
+    let loose = gel(
+        |gel| gel.well.floor = Support::Sliding,
+        &[3.2e-3, 3.6e-3, 4e-3, 4.4e-3, 4.8e-3],
+    );
+    for (name, happens, ends) in SEVERAL {
+        families.push((
+            format!("{name}, loose floor"),
+            loose.clone(),
+            (*happens, *ends),
+        ));
     }
     let mut wrong = Vec::new();
     let mut covered = Covered::default();

@@ -36,6 +36,34 @@ fn over(f: &dyn Fn(f64, f64) -> [f64; 2], x: f64, heights: &[[f64; 2]]) -> [f64;
     turned(f(DEPTH + height, x), slope)
 }
 
+/// The height and the slope of a surface that is domed or dished, by two numbers between 0 and 1.
+fn dome(x: f64, [size, sign]: [f64; 2]) -> [f64; 2] {
+    let a = between(0.2e-3, 0.3e-3, size) * if sign < 0.33 { -1.0 } else { 1.0 };
+    let v = x / 8e-3;
+    [a * (0.5 - v * v), -2.0 * a * v / 8e-3]
+}
+/// Those of a surface with waves.
+fn waves(x: f64, [size, length, phase]: [f64; 3]) -> [f64; 2] {
+    let size = between(0.05e-3, 0.2e-3, size);
+    sine(x, size, between(7e-3, 13e-3, length), phase)
+}
+/// The forces on a probe that rubs, after it rested at the start.
+fn rubbed([l, n]: [f64; 2], x: f64, [friction, length]: [f64; 2]) -> [f64; 2] {
+    let moved = 1.0 - (-(x + 8e-3) / between(0.3e-3, 2e-3, length)).exp();
+    [l - between(0.1, 0.3, friction) * n * moved, n]
+}
+/// The forces of a gel that relaxes.
+fn relaxed(forces: [f64; 2], x: f64, [share, length]: [f64; 2]) -> [f64; 2] {
+    let relaxed = 1.0 - (-(x + 8e-3) / between(1.5e-3, 10e-3, length)).exp();
+    forces.map(|v| v * (1.0 - between(0.1, 0.2, share) * relaxed))
+}
+/// The forces by a sensor that sways.
+fn swaying([l, n]: [f64; 2], x: f64, [size, length, of_l, of_n]: [f64; 4]) -> [f64; 2] {
+    let (size, length) = (between(0.05, 0.2, size), between(5e-3, 20e-3, length));
+    let [of_l, of_n] = [of_l, of_n].map(|phase| sine(x, size, length, phase)[0]);
+    [l + of_l, n + of_n]
+}
+
 fn between(low: f64, high: f64, u: f64) -> f64 {
     low + (high - low) * u
 }
@@ -58,11 +86,7 @@ pub const MOTIONS: &[(&str, Happens, Ends)] = &[
     ),
     (
         "domed",
-        |f, x, u| {
-            let a = between(0.2e-3, 0.3e-3, u[0]) * if u[1] < 0.33 { -1.0 } else { 1.0 };
-            let v = x / 8e-3;
-            turned(f(DEPTH - a * v * v + 0.5 * a, x), -2.0 * a * v / 8e-3)
-        },
+        |f, x, u| over(f, x, &[dome(x, [u[0], u[1]])]),
         nothing,
     ),
     (
@@ -93,24 +117,12 @@ pub const MOTIONS: &[(&str, Happens, Ends)] = &[
     ),
     (
         "relaxes 10-20 %",
-        |f, x, u| {
-            let s = x + 8e-3;
-            let g =
-                1.0 - between(0.1, 0.2, u[0]) * (1.0 - (-s / between(1.5e-3, 10e-3, u[1])).exp());
-            f(DEPTH, x).map(|v| v * g)
-        },
+        |f, x, u| relaxed(f(DEPTH, x), x, [u[0], u[1]]),
         nothing,
     ),
     (
         "friction 0.1-0.3",
-        |f, x, u| {
-            let [l, n] = f(DEPTH, x);
-            let s = x + 8e-3;
-            [
-                l - between(0.1, 0.3, u[0]) * n * (1.0 - (-s / between(0.3e-3, 2e-3, u[1])).exp()),
-                n,
-            ]
-        },
+        |f, x, u| rubbed(f(DEPTH, x), x, [u[0], u[1]]),
         nothing,
     ),
     (
@@ -275,10 +287,7 @@ pub const MOTIONS: &[(&str, Happens, Ends)] = &[
 pub const SINES: &[(&str, Happens, Ends)] = &[
     (
         "surface has waves",
-        |f, x, u| {
-            let size = between(0.05e-3, 0.2e-3, u[0]);
-            over(f, x, &[sine(x, size, between(7e-3, 13e-3, u[1]), u[2])])
-        },
+        |f, x, u| over(f, x, &[waves(x, [u[0], u[1], u[2]])]),
         nothing,
     ),
     (
@@ -293,12 +302,7 @@ pub const SINES: &[(&str, Happens, Ends)] = &[
     ),
     (
         "sensor sways",
-        |f, x, u| {
-            let (size, length) = (between(0.05, 0.2, u[0]), between(5e-3, 20e-3, u[1]));
-            let [l, n] = f(DEPTH, x);
-            let [of_l, of_n] = [u[2], u[3]].map(|phase| sine(x, size, length, phase)[0]);
-            [l + of_l, n + of_n]
-        },
+        |f, x, u| swaying(f(DEPTH, x), x, [u[0], u[1], u[2], u[3]]),
         nothing,
     ),
     (
@@ -308,6 +312,64 @@ pub const SINES: &[(&str, Happens, Ends)] = &[
             let [l, n] = f(DEPTH, x);
             let both = |a: f64, b: f64| sine(x, size, 8e-3, a)[0] + sine(x, other, 14e-3, b)[0];
             [l + both(u[2], u[3]), n + both(u[4], u[5])]
+        },
+        nothing,
+    ),
+];
+
+/// Several of these at once.
+pub const SEVERAL: &[(&str, Happens, Ends)] = &[
+    (
+        "domed, wavy",
+        |f, x, u| over(f, x, &[dome(x, [u[0], u[1]]), waves(x, [u[2], u[3], u[4]])]),
+        nothing,
+    ),
+    (
+        "domed, rubs",
+        |f, x, u| rubbed(over(f, x, &[dome(x, [u[0], u[1]])]), x, [u[2], u[3]]),
+        nothing,
+    ),
+    (
+        "domed, sways",
+        |f, x, u| {
+            let forces = over(f, x, &[dome(x, [u[0], u[1]])]);
+            swaying(forces, x, [u[2], u[3], u[4], u[5]])
+        },
+        nothing,
+    ),
+    (
+        "wavy, rubs",
+        |f, x, u| {
+            let forces = over(f, x, &[waves(x, [u[0], u[1], u[2]])]);
+            rubbed(forces, x, [u[3], u[4]])
+        },
+        nothing,
+    ),
+    (
+        "wavy, relaxes",
+        |f, x, u| {
+            let forces = over(f, x, &[waves(x, [u[0], u[1], u[2]])]);
+            relaxed(forces, x, [u[3], u[4]])
+        },
+        nothing,
+    ),
+    (
+        "sways, rubs",
+        |f, x, u| {
+            swaying(
+                rubbed(f(DEPTH, x), x, [u[0], u[1]]),
+                x,
+                [u[2], u[3], u[4], u[5]],
+            )
+        },
+        nothing,
+    ),
+    (
+        "domed, wavy, rubs, relaxes",
+        |f, x, u| {
+            let heights = [dome(x, [u[0], u[1]]), waves(x, [u[2], u[3], u[4]])];
+            let forces = rubbed(over(f, x, &heights), x, [u[5], u[6]]);
+            relaxed(forces, x, [u[7], u[0]])
         },
         nothing,
     ),

@@ -114,11 +114,28 @@ const SMALL: f64 = 0.005;
 /// What is left where nothing disturbs.
 const EXACT: (Part, f64) = (Part::Smooth, 0.002);
 
+/// A part with half of what gels and probes do in any case: where it alone was possible, it and an inclusion would explain it and another
+/// disturbance better than no inclusion does.
+///
+/// Implements: ROB-022.
+const fn amid(part: Part, size: f64) -> [(Part, f64); 7] {
+    use Part::{Friction, Gel, Relaxation, Support, Surface};
+    [
+        (part, size),
+        (Support, 0.5),
+        (Gel, 0.5),
+        (Surface, 0.5),
+        (Friction, 0.5),
+        (Relaxation, 0.5),
+        EXACT,
+    ]
+}
+
 /// The classes with their prior weights. A size of a smooth part or a walk is a share of the mean normal force.
 ///
 /// Implements: ROB-022.
 #[rustfmt::skip]
-pub const CLASSES: [Class; 41] = {
+pub const CLASSES: [Class; 43] = {
     use Part::{Broad, Bump, Friction, Gel, Relaxation, Smooth, Stage, Support, Surface, Sway, Tilt, UnevenFriction, Walk, Waves};
     [
         class("the maps hold", 2.0, &[EXACT]),
@@ -139,11 +156,11 @@ pub const CLASSES: [Class; 41] = {
         class("the sensor wanders a little", 0.5, &[(Walk, 0.05)]),
         class("the sensor wanders", 0.5, &[(Walk, 0.15)]),
         class("the sensor wanders far", 0.5, &[(Walk, 0.5)]),
-        class("the surface has waves, 1.8 radii long", 0.2, &[(Waves(0), 0.015), EXACT]),
-        class("the surface has waves, 1.3 radii long", 0.2, &[(Waves(1), 0.015), EXACT]),
-        class("the surface has waves, 1.1 radii long", 0.2, &[(Waves(2), 0.015), EXACT]),
-        class("the surface has waves, 0.9 radii long", 0.2, &[(Waves(3), 0.015), EXACT]),
-        class("the surface is wavy", 0.5, &[(Waves(4), 0.015), EXACT]),
+        class("the surface has waves, 1.8 radii long", 0.08, &amid(Waves(0), 0.015)),
+        class("the surface has waves, 1.3 radii long", 0.08, &amid(Waves(1), 0.015)),
+        class("the surface has waves, 1.1 radii long", 0.08, &amid(Waves(2), 0.015)),
+        class("the surface has waves, 0.9 radii long", 0.08, &amid(Waves(3), 0.015)),
+        class("the surface is wavy", 0.2, &amid(Waves(4), 0.015)),
         class("the surface has a bump, 10 % along", 0.1, &[(Bump(1), 0.023), EXACT]),
         class("the surface has a bump, 20 % along", 0.1, &[(Bump(2), 0.023), EXACT]),
         class("the surface has a bump, 30 % along", 0.1, &[(Bump(3), 0.023), EXACT]),
@@ -153,16 +170,20 @@ pub const CLASSES: [Class; 41] = {
         class("the surface has a bump, 70 % along", 0.1, &[(Bump(7), 0.023), EXACT]),
         class("the surface has a bump, 80 % along", 0.1, &[(Bump(8), 0.023), EXACT]),
         class("the surface has a bump, 90 % along", 0.1, &[(Bump(9), 0.023), EXACT]),
-        class("the sensor sways over 2.5 radii", 0.2, &[(Sway(0), 0.08), EXACT]),
-        class("the sensor sways over 1.9 radii", 0.2, &[(Sway(1), 0.08), EXACT]),
-        class("the sensor sways over 1.6 radii", 0.2, &[(Sway(2), 0.08), EXACT]),
-        class("the sensor sways over 1.3 radii", 0.2, &[(Sway(3), 0.08), EXACT]),
-        class("the sensor sways over 1.1 radii", 0.2, &[(Sway(4), 0.08), EXACT]),
-        class("the sensor sways over 1 radius", 0.2, &[(Sway(5), 0.08), EXACT]),
-        class("the sensor sways", 0.5, &[(Sway(6), 0.05), EXACT]),
-        class("the sensor sways far", 0.5, &[(Sway(6), 0.1), EXACT]),
+        class("the sensor sways over 2.5 radii", 0.2, &amid(Sway(0), 0.08)),
+        class("the sensor sways over 1.9 radii", 0.2, &amid(Sway(1), 0.08)),
+        class("the sensor sways over 1.6 radii", 0.2, &amid(Sway(2), 0.08)),
+        class("the sensor sways over 1.3 radii", 0.2, &amid(Sway(3), 0.08)),
+        class("the sensor sways over 1.1 radii", 0.2, &amid(Sway(4), 0.08)),
+        class("the sensor sways over 1 radius", 0.2, &amid(Sway(5), 0.08)),
+        class("the sensor sways", 0.5, &amid(Sway(6), 0.05)),
+        class("the sensor sways far", 0.5, &amid(Sway(6), 0.1)),
         class("several of these at once", 0.5,
             &[(Gel, 0.5), (Stage, 0.5), (Surface, 0.5), (Friction, 0.5), (Relaxation, 0.5), (Smooth, 0.005)]),
+        class("several of these at once, and walls or floor are loose", 0.2,
+            &[(Support, 1.0), (Gel, 0.5), (Stage, 0.5), (Surface, 0.5), (Friction, 0.5), (Relaxation, 0.5), (Smooth, 0.005)]),
+        class("the surface is domed, the probe rubs, and the gel relaxes", 0.2,
+            &[(Surface, 1.0), (Friction, 0.5), (Relaxation, 0.5), EXACT]),
     ]
 };
 
@@ -323,7 +344,12 @@ impl Class {
         };
         let left: Vec<_> = self.parts.iter().copied().filter(is_left).collect();
         let has_own = |parts: &[(Part, f64)]| parts.iter().any(|part| !is_smooth(part));
-        let is_other = left.is_empty() || has_own(self.parts) && !has_own(&left);
+        let is_variant =
+            |part: Part| matches!(part, Part::Waves(_) | Part::Bump(_) | Part::Sway(_));
+        let first = self.parts[0].0;
+        let is_other = is_variant(first) && known.contains(&first.name())
+            || left.is_empty()
+            || has_own(self.parts) && !has_own(&left);
         (!is_other).then_some(left)
     }
 }
