@@ -174,7 +174,7 @@ fn each_class_of_disturbance_leaves_a_part_of_gamma() {
         };
         let most = numbers(&beside["unknown"]["gamma"]);
         let classes = row["classes"].as_array().unwrap();
-        assert_eq!(classes.len(), 41);
+        assert_eq!(classes.len(), 43);
         assert_eq!(classes[0]["class"], "the maps hold");
         let holds = numbers(&classes[0]["gamma"]);
         for class in classes {

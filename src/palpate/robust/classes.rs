@@ -114,7 +114,7 @@ const SMALL: f64 = 0.005;
 /// What is left where nothing disturbs.
 const EXACT: (Part, f64) = (Part::Smooth, 0.002);
 
-/// A part with half of what gels and probes do in any case: where it alone was possible, it and an inclusion would explain it and another
+/// A part with what gels and probes do in any case: where it alone was possible, it and an inclusion would explain it and another
 /// disturbance better than no inclusion does.
 ///
 /// Implements: ROB-022.
@@ -122,7 +122,7 @@ const fn amid(part: Part, size: f64) -> [(Part, f64); 7] {
     use Part::{Friction, Gel, Relaxation, Support, Surface};
     [
         (part, size),
-        (Support, 0.5),
+        (Support, 1.0),
         (Gel, 0.5),
         (Surface, 0.5),
         (Friction, 0.5),
