@@ -97,7 +97,7 @@ fn each_record_of_a_folder_is_judged_alone() {
     let table: Vec<_> = text(&table.stdout).lines().map(String::from).collect();
     assert_eq!(
         table[0].trim_end(),
-        "file                decision          posterior"
+        "file                decision          posterior  explanation or causes"
     );
     assert!(
         table[1].starts_with("many/a,wïthout.CSV  no inclusion      0.0"),

@@ -288,7 +288,7 @@ fn a_figure_shows_the_record_beside_what_explains_it() {
     let (_, alone) = figure(&format!("negative.csv {MAPS} --depth-mm 3"));
     assert_has(
         &alone,
-        "It cannot be judged: the forces have the other sign",
+        "It cannot be judged: the forces have the opposite sign",
     );
     assert_eq!(alone.matches("<circle").count(), 33 * 2 + 2);
 }
