@@ -250,7 +250,7 @@ fn what_helps_is_that_of_the_first_part() {
             "the gel is another"
             | "the gel is another, and off smoothly"
             | "walls or floor are loose" => "a reference sweep,",
-            name if name.starts_with("several ") => "a reference sweep,",
+            name if name.starts_with("several") => "a reference sweep,",
             _ => "more sweeps of the place,",
         };
         assert!(class.remedy().starts_with(words), "{}", class.name);
