@@ -180,7 +180,7 @@ pub const CLASSES: [Class; 43] = {
         class("the sensor sways far", 0.5, &amid(Sway(6), 0.1)),
         class("several of these at once", 0.5,
             &[(Gel, 0.5), (Stage, 0.5), (Surface, 0.5), (Friction, 0.5), (Relaxation, 0.5), (Smooth, 0.005)]),
-        class("several, and walls or floor are loose", 0.2,
+        class("several at once, loose walls or floor", 0.2,
             &[(Support, 1.0), (Gel, 0.5), (Stage, 0.5), (Surface, 0.5), (Friction, 0.5), (Relaxation, 0.5), (Smooth, 0.005)]),
         class("the surface is domed, the probe rubs", 0.2,
             &[(Surface, 1.0), (Friction, 0.5), (Relaxation, 0.5), EXACT]),
