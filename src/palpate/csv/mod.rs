@@ -101,11 +101,14 @@ impl<const N: usize> Rows<N> {
         if mark == Some(',') {
             notes.push("commas in its numbers are decimal commas".into());
         }
-        let count = missing.len();
-        let left_out = format!("samples with a missing number are not used: {count}");
         match first {
             Some(refusal) if !are_samples => return Err(refusal),
-            Some(_) => notes.push(left_out),
+            Some(_) => {
+                let count = missing.len();
+                notes.push(format!(
+                    "samples with a missing number are not used: {count}"
+                ));
+            }
             None => {}
         }
         Ok(Rows {

@@ -344,10 +344,8 @@ impl Class {
         };
         let left: Vec<_> = self.parts.iter().copied().filter(is_left).collect();
         let has_own = |parts: &[(Part, f64)]| parts.iter().any(|part| !is_smooth(part));
-        let is_variant =
-            |part: Part| matches!(part, Part::Waves(_) | Part::Bump(_) | Part::Sway(_));
         let first = self.parts[0].0;
-        let is_other = is_variant(first) && known.contains(&first.name())
+        let is_other = first != first.name() && known.contains(&first.name())
             || left.is_empty()
             || has_own(self.parts) && !has_own(&left);
         (!is_other).then_some(left)

@@ -459,6 +459,22 @@ fn parts_and_classes_are_those_of_the_tables() {
         .find(|class| class.name.starts_with("several"))
         .unwrap();
     assert_eq!(several.parts(&[]).unwrap().len(), 6);
+    // Waves and sways come with what gels and probes do in any case, and a known one takes the whole class with it.
+    let of = |name: &str| CLASSES.iter().find(|class| class.name == name).unwrap();
+    let mut beside = vec![
+        (Part::Sway(6), 0.05),
+        (Part::Support, 1.0),
+        (Part::Gel, 0.5),
+        (Part::Surface, 0.5),
+        (Part::Friction, 0.5),
+        (Part::Relaxation, 0.5),
+        (Part::Smooth, 0.002),
+    ];
+    let sways = of("the sensor sways");
+    assert_eq!(sways.parts(&[]).unwrap(), beside);
+    assert!(sways.parts(&[Part::Walk]).is_none());
+    beside.retain(|(part, _)| *part != Part::Surface);
+    assert_eq!(sways.parts(&[Part::Surface]).unwrap(), beside);
 }
 
 // Verifies: ROB-030.
