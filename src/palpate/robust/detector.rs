@@ -6,7 +6,7 @@ use std::ops::AddAssign;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::classes::{CLASSES, Class, Covariance, Disturbances, Part, SUPPORT_ALONE, SharedBy};
-use super::evidence::{Evidence, Signal, WeightedClass, evidence, log_sum};
+use super::evidence::{Evidence, Signal, WeightedClass, evidence};
 use super::sweep::{Cleaned, PreparedSweep, prepared};
 use super::{RobustAnswer, RobustQuestion, RobustSignal, RobustSweep, channels};
 use crate::detect::{Decision, DetectError, ErrorRates, error_rates, map_threshold, posterior};
@@ -132,24 +132,20 @@ impl<'a> RobustDetector<'a> {
             answer.causes.push(cause);
             return Ok(answer);
         }
-        let (mut record, mut noise) = (Vec::new(), Vec::new());
-        for (sweep, cleaned) in self.sweeps.iter().zip(&cleaned) {
-            let [amplitudes, variances] = sweep.reduced(cleaned, level);
-            record.extend(amplitudes.iter());
-            noise.extend(variances.iter());
-        }
-        let counted = |all: Vec<f64>| DVector::from_vec(all).select_rows(&self.counted);
-        let (record, noise) = (counted(record), counted(noise));
-        let found = evidence(&record, &noise, &self.weighted, &self.signals, &self.shape);
-        let Some(found) = found else {
+        let [record, noise] = self.reduced(&cleaned, level);
+        let turned: Vec<Cleaned> = cleaned.iter().map(Cleaned::turned).collect();
+        let [turned, _] = self.reduced(&turned, level);
+        let (classes, signals) = (&self.weighted, &self.signals);
+        let found = evidence([&record, &turned], &noise, classes, signals, &self.shape);
+        let Some(([found, turned], factors)) = found else {
             answer.causes.push(Cause::Misfit);
             return Ok(answer);
         };
-        self.conclude(&found, &noise, &mut answer)?;
+        self.conclude(&found, &factors, &mut answer)?;
         if self.sweeps.iter().any(|sweep| sweep.has_lateral) {
             let alone = self.posterior_of_normal([&record, &noise])?;
             answer.is_none_doubtful = alone.is_some_and(|[theta, _]| theta >= 0.0)
-                || self.is_likelier_turned(&cleaned, level, &noise, &found);
+                || turned.total() > found.total() + MUCH_LIKELIER;
             let is_contradicted = match answer.decision {
                 Some(Decision::Inclusion) => {
                     alone.is_some_and(|[_, posterior]| posterior <= 1.0 - self.question.sure)
@@ -255,10 +251,20 @@ impl<'a> RobustDetector<'a> {
         heavy.find_map(|(_, level)| wrong_level(*level))
     }
 
+    /// The amplitudes of the records that count, and the variances of their noise.
+    fn reduced(&self, cleaned: &[Cleaned], level: f64) -> [DVector<f64>; 2] {
+        let pairs = self.sweeps.iter().zip(cleaned);
+        let each: Vec<_> = pairs.map(|(sweep, of)| sweep.reduced(of, level)).collect();
+        [0, 1].map(|at| {
+            let all: Vec<f64> = each.iter().flat_map(|of| of[at].iter()).copied().collect();
+            DVector::from_vec(all).select_rows(&self.counted)
+        })
+    }
+
     fn conclude(
         &self,
         found: &Evidence,
-        noise: &DVector<f64>,
+        factors: &[Cholesky<f64, Dyn>],
         answer: &mut RobustAnswer,
     ) -> Result<(), Refusal> {
         let question = &self.question;
@@ -270,8 +276,8 @@ impl<'a> RobustDetector<'a> {
         let shares =
             pairs.map(|(without, with)| [libm::exp(without - none), libm::exp(with - any)]);
         answer.classes = self.classes.iter().copied().zip(shares).collect();
-        answer.rates = self.rates(&found.factors, answer)?;
-        let degrees = noise.len() as f64 - 2.0 * self.sweeps.len() as f64;
+        answer.rates = self.rates(factors, answer)?;
+        let degrees = self.counted.len() as f64 - 2.0 * self.sweeps.len() as f64;
         let tail = chi_square(found.distance, degrees, 0.0);
         if tail.map_err(refused)?.upper < MISFIT_RATE {
             answer.causes.push(Cause::Misfit);
@@ -291,34 +297,6 @@ impl<'a> RobustDetector<'a> {
         Ok(())
     }
 
-    /// Whether the records are much likelier with the other sign of their lateral forces than as they are.
-    ///
-    /// Implements: ROB-009.
-    fn is_likelier_turned(
-        &self,
-        cleaned: &[Cleaned],
-        level: f64,
-        noise: &DVector<f64>,
-        found: &Evidence,
-    ) -> bool {
-        let turned = self.sweeps.iter().zip(cleaned).flat_map(|(sweep, of)| {
-            let mut of = of.clone();
-            of.forces
-                .lateral
-                .iter_mut()
-                .for_each(|force| *force = -*force);
-            let [amplitudes, _] = sweep.reduced(&of, level);
-            amplitudes.as_slice().to_vec()
-        });
-        let turned = DVector::from_vec(turned.collect()).select_rows(&self.counted);
-        let turned = evidence(&turned, noise, &self.weighted, &self.signals, &self.shape);
-        let whole = |of: &Evidence| {
-            let [none, any] = of.totals();
-            log_sum(none, any)
-        };
-        turned.is_some_and(|turned| whole(&turned) > whole(found) + MUCH_LIKELIER)
-    }
-
     /// θ and the posterior by the normal forces alone, if they have a likelihood.
     ///
     /// Implements: ROB-009.
@@ -333,7 +311,7 @@ impl<'a> RobustDetector<'a> {
         let rows: Vec<usize> = rows.collect();
         let (classes, signals, shape) = of_rows(&rows, &self.weighted, &self.signals, &self.shape);
         let [record, noise] = [record, noise].map(|of| of.select_rows(&rows));
-        let Some(found) = evidence(&record, &noise, &classes, &signals, &shape) else {
+        let Some(([found], _)) = evidence([&record], &noise, &classes, &signals, &shape) else {
             return Ok(None);
         };
         let [none, any] = found.totals();

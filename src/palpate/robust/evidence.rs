@@ -34,19 +34,35 @@ pub struct WeightedClass {
 /// What a record says of each class under either hypothesis.
 #[derive(Debug, Clone)]
 pub struct Evidence {
-    /// The covariance of each class beside the noise, factorised.
-    pub factors: Vec<Cholesky<f64, Dyn>>,
     /// ln of the weight of each class times the density of the record without inclusion.
     pub without: Vec<f64>,
     /// ln of the density of the record with each signal, averaged over the classes.
     pub with: Vec<f64>,
     /// ln of the weight of each class times the density with any signal, with their prior.
     pub by_class: Vec<f64>,
-    /// The least Mahalanobis distance squared of the record in the class and hypothesis of the highest density.
+    /// The highest density in any class and hypothesis, and the least Mahalanobis distance squared of the record there.
+    pub best: f64,
     pub distance: f64,
 }
 
 impl Evidence {
+    fn new(signals: usize) -> Evidence {
+        Evidence {
+            without: Vec::new(),
+            with: vec![f64::NEG_INFINITY; signals],
+            by_class: Vec::new(),
+            best: f64::NEG_INFINITY,
+            distance: f64::INFINITY,
+        }
+    }
+
+    /// Keeps the distance of the highest density.
+    fn weigh(&mut self, density: f64, distance: f64) {
+        if density > self.best {
+            (self.best, self.distance) = (density, distance);
+        }
+    }
+
     /// ln of the density of the record without inclusion, and with any: both averaged over the classes. θ is their difference.
     ///
     /// Implements: ROB-032.
@@ -54,20 +70,25 @@ impl Evidence {
         [&self.without, &self.by_class]
             .map(|logs| logs.iter().copied().fold(f64::NEG_INFINITY, log_sum))
     }
+
+    /// ln of the density of the record under either hypothesis.
+    pub fn total(&self) -> f64 {
+        let [none, any] = self.totals();
+        log_sum(none, any)
+    }
 }
 
-/// A factorised covariance, and the record over it.
-struct Factor {
+/// A factorised covariance, and N records over it.
+struct Factor<const N: usize> {
     cholesky: Cholesky<f64, Dyn>,
-    white: DVector<f64>,
+    white: [DVector<f64>; N],
     log_det: f64,
 }
 
-impl Factor {
-    fn new(covariance: DMatrix<f64>, record: &DVector<f64>) -> Option<Factor> {
+impl<const N: usize> Factor<N> {
+    fn new(covariance: DMatrix<f64>, records: [&DVector<f64>; N]) -> Option<Factor<N>> {
         let cholesky = Cholesky::new(covariance)?;
-        let mut white = record.clone();
-        cholesky.l_dirty().solve_lower_triangular_mut(&mut white);
+        let white = records.map(|record| whitened(&cholesky, record));
         let diagonal = cholesky.l_dirty().diagonal();
         let log_det = diagonal.iter().map(|root| libm::log(*root)).sum();
         Some(Factor {
@@ -77,69 +98,68 @@ impl Factor {
         })
     }
 
-    /// The evidence of the record for a signal of uncertain amplitude.
-    fn with(&self, signal: &Signal) -> ColouredEvidence {
-        let mut along = signal.mean.clone();
-        self.cholesky
-            .l_dirty()
-            .solve_lower_triangular_mut(&mut along);
-        let energy = [self.white.norm_squared(), along.norm_squared()];
-        let cross = along.dot(&self.white);
-        ColouredEvidence::of_white(self.log_det, energy, cross, signal.amplitude_sd)
+    /// The evidence of each record for a signal of uncertain amplitude.
+    fn with(&self, signal: &Signal) -> [ColouredEvidence; N] {
+        let along = whitened(&self.cholesky, &signal.mean);
+        self.white.each_ref().map(|white| {
+            let energy = [white.norm_squared(), along.norm_squared()];
+            let cross = along.dot(white);
+            ColouredEvidence::of_white(self.log_det, energy, cross, signal.amplitude_sd)
+        })
     }
 }
 
-/// The evidence of `record` by classes of the weights and covariances, beside `signals` with a `shape` of uncertainty; all in modes.
-/// None if a covariance is not positive definite.
+/// L⁻¹ of a vector.
+fn whitened(cholesky: &Cholesky<f64, Dyn>, of: &DVector<f64>) -> DVector<f64> {
+    let mut white = of.clone();
+    cholesky.l_dirty().solve_lower_triangular_mut(&mut white);
+    white
+}
+
+/// The evidence of each of `records` with the same noise, by classes of the weights and covariances, beside `signals` with a `shape` of
+/// uncertainty; all in modes. Beside it the covariance of each class and the noise, factorised. None if a covariance is not positive
+/// definite.
 ///
 /// Implements: ROB-031, ROB-032.
-pub fn evidence(
-    record: &DVector<f64>,
+pub fn evidence<const N: usize>(
+    records: [&DVector<f64>; N],
     noise: &DVector<f64>,
     classes: &[WeightedClass],
     signals: &[Signal],
     shape: &DMatrix<f64>,
-) -> Option<Evidence> {
+) -> Option<([Evidence; N], Vec<Cholesky<f64, Dyn>>)> {
     let whole: f64 = classes.iter().map(|class| class.weight).sum();
     let (sizes, nearest) = sizes(signals);
-    let (mut alone, mut without, mut by_class) = (Vec::new(), Vec::new(), Vec::new());
-    let mut with = vec![f64::NEG_INFINITY; signals.len()];
-    let mut best = (f64::NEG_INFINITY, f64::INFINITY);
+    let mut all = records.map(|_| Evidence::new(signals.len()));
+    let mut alone = Vec::new();
     for class in classes {
         let weight = libm::log(class.weight / whole);
         let covariance = &class.covariance + DMatrix::from_diagonal(noise);
-        let none = Factor::new(covariance.clone(), record)?;
-        let distance = none.white.norm_squared();
-        let density = weight - 0.5 * distance - none.log_det;
-        without.push(density);
-        if density > best.0 {
-            best = (density, distance);
+        let none = Factor::new(covariance.clone(), records)?;
+        for (found, white) in all.iter_mut().zip(&none.white) {
+            let distance = white.norm_squared();
+            let density = weight - 0.5 * distance - none.log_det;
+            found.without.push(density);
+            found.weigh(density, distance);
+            found.by_class.push(f64::NEG_INFINITY);
         }
         let factor = |size: &f64| {
             let share = SHAPE * size;
-            Factor::new(&covariance + shape * (share * share), record)
+            Factor::new(&covariance + shape * (share * share), records)
         };
         let factors = sizes.iter().map(factor).collect::<Option<Vec<_>>>()?;
-        let mut any = f64::NEG_INFINITY;
-        for ((signal, of), with) in signals.iter().zip(&nearest).zip(&mut with) {
-            let found = factors[*of].with(signal);
-            let density = found.with + weight;
-            if density > best.0 {
-                best = (density, found.distance_with);
+        for (at, (signal, of)) in signals.iter().zip(&nearest).enumerate() {
+            for (found, with) in all.iter_mut().zip(factors[*of].with(signal)) {
+                let density = with.with + weight;
+                found.weigh(density, with.distance_with);
+                found.with[at] = log_sum(found.with[at], density);
+                let any = &mut found.by_class[alone.len()];
+                *any = log_sum(*any, density + signal.log_prior);
             }
-            *with = log_sum(*with, density);
-            any = log_sum(any, density + signal.log_prior);
         }
-        by_class.push(any);
         alone.push(none.cholesky);
     }
-    Some(Evidence {
-        factors: alone,
-        without,
-        with,
-        by_class,
-        distance: best.1,
-    })
+    Some((all, alone))
 }
 
 /// Sizes that stand for those of all signals, and which one stands for each.

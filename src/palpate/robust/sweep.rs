@@ -49,6 +49,18 @@ pub struct Cleaned {
     pub glitches: usize,
 }
 
+impl Cleaned {
+    /// With the other sign of its lateral forces.
+    ///
+    /// Implements: ROB-009.
+    pub fn turned(&self) -> Cleaned {
+        let mut turned = self.clone();
+        let lateral = turned.forces.lateral.iter_mut();
+        lateral.for_each(|force| *force = -*force);
+        turned
+    }
+}
+
 impl RobustQuestion<'_> {
     /// The passes of a record under the probe of `reference` that are long enough to be sweeps, or the longest if none is; and how many
     /// samples the others have.

@@ -79,7 +79,9 @@ fn evidence_is_that_of_dense_normal_laws() {
     ];
     let classes = [(3.0, one), (1.0, other)];
     let classes = classes.map(|(weight, covariance)| WeightedClass { weight, covariance });
-    let found = evidence(&record, &own, &classes, &signals, &shape).unwrap();
+    let other = &record * 2.0;
+    let found = evidence([&other, &record], &own, &classes, &signals, &shape);
+    let ([_, found], _) = found.unwrap();
     for (found, expected) in [
         (found.without, [-3.6753127483705823, -4.330685755016049]),
         (found.with, [-1.9559298058616992, -2.3567653216572255]),
@@ -111,8 +113,10 @@ fn signals_of_nearly_one_size_have_one_shape() {
             covariance: DMatrix::identity(2, 2),
         };
         let shape = DMatrix::from_diagonal_element(2, 2, 100.0);
-        let found = evidence(&of([2.0, 1.0]), &of([1.0, 1.0]), &[class], &signals, &shape);
-        found.unwrap().with[1]
+        let (record, noise) = (of([2.0, 1.0]), of([1.0, 1.0]));
+        let found = evidence([&record], &noise, &[class], &signals, &shape);
+        let ([found], _) = found.unwrap();
+        found.with[1]
     };
     for near in [3.6, 4.4] {
         assert_eq!(with(near), with(4.0));

@@ -41,7 +41,8 @@ pub fn evidence_of(
     let classes = classes(weights, covariances, modes)?;
     let signals = signals(means, sizes, prior, modes)?;
     let [record, noise] = [record, noise].map(DVector::from_vec);
-    let found = evidence(&record, &noise, &classes, &signals, &shape).ok_or_else(|| {
+    let found = evidence([&record], &noise, &classes, &signals, &shape);
+    let ([found], _) = found.ok_or_else(|| {
         let wrong = "covariances has a class that is not positive definite beside noise and shape";
         Refused::range(wrong)
     })?;
