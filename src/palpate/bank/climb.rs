@@ -1,4 +1,4 @@
-//! The most likely place between the nodes of a bank's cells, by Newton's method with differences.
+//! The most likely place between the nodes of a bank's cells, by the method of Levenberg and Marquardt.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,8 +6,13 @@ use super::axis::BankAxis;
 use super::detector::{BankDetector, BankStatistic};
 use crate::detect::nuisance::dot;
 
-/// Steps of Newton's method to the most likely place.
-const STEPS: usize = 8;
+/// Steps to the most likely place, at most, and how little a step may gain for the last one to be it.
+const STEPS: usize = 50;
+const GAIN: f64 = 1e-10;
+/// Half the distance over which the slope of a signal is a difference, over that of two nodes.
+const NEAR: f64 = 0.01;
+/// What is added to the curvature along each axis, over it, until a step leads upwards.
+const DAMPINGS: [f64; 9] = [0.0, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0, 1e3, 1e6];
 
 /// (Pδ)ᵀz − |Pδ|²/2 over the parameters of a bank.
 struct Hill<'a> {
@@ -44,9 +49,13 @@ impl BankDetector {
         };
         let mut best = hill.point(start);
         for _ in 0..STEPS {
-            match hill.climb(best) {
-                Some(higher) => best = higher,
-                None => break,
+            let Some(higher) = hill.climb(best) else {
+                break;
+            };
+            let gain = higher.height - best.height;
+            best = higher;
+            if gain < GAIN {
+                break;
             }
         }
         best.at
@@ -60,62 +69,57 @@ impl Hill<'_> {
         Point { height, at }
     }
 
-    /// The height beside a point, by so many steps along these axes.
-    fn beside(&self, point: Point, moves: &[(usize, f64)]) -> f64 {
+    /// The place beside another, by so many steps along an axis.
+    fn beside(&self, point: Point, axis: usize, by: f64) -> [f64; 4] {
         let mut at = point.at;
-        for &(axis, by) in moves {
-            at[axis] += by * self.step[axis];
-        }
-        self.point(at).height
+        at[axis] += by * self.step[axis];
+        at
     }
 
     /// Whether one may move along an axis: at whose end it still rises outwards stays there.
     fn is_free(&self, point: Point, axis: usize) -> bool {
         let (points, x) = (&self.axes[axis].points, point.at[axis]);
-        let rises = |by: f64| self.beside(point, &[(axis, by)]) > point.height;
+        let rises = |by: f64| self.point(self.beside(point, axis, by)).height > point.height;
         let is_first = x <= points[0] && !rises(0.1);
         let is_last = x >= points[points.len() - 1] && !rises(-0.1);
         self.axes[axis].is_free() && !is_first && !is_last
     }
 
-    /// A higher point by one step of Newton's method, or a half or a quarter of it.
+    /// A higher point within the bank: with J the slopes of Pδ along the free axes, a step (JᵀJ + λ diag JᵀJ)⁻¹ Jᵀ(Pz − Pδ) with the
+    /// least λ that leads upwards.
     fn climb(&self, from: Point) -> Option<Point> {
         let free: Vec<usize> = (0..4).filter(|&axis| self.is_free(from, axis)).collect();
-        let moves = self.newton(from, &free);
-        let points = [1.0, 0.5, 0.25].map(|share| {
-            let mut next = from.at;
+        let slope = |axis: usize| -> Vec<f64> {
+            let [before, after] =
+                [-NEAR, NEAR].map(|by| self.detector.template_at(self.beside(from, axis, by)));
+            let pairs = after.iter().zip(&before);
+            pairs.map(|(a, b)| (a - b) / (2.0 * NEAR)).collect()
+        };
+        let slopes: Vec<Vec<f64>> = free.iter().map(|&axis| slope(axis)).collect();
+        let template = self.detector.template_at(from.at);
+        let rest = self
+            .left
+            .iter()
+            .zip(&template)
+            .map(|(z, signal)| z - signal);
+        let rest: Vec<f64> = rest.collect();
+        let rise = DVector::from_iterator(free.len(), slopes.iter().map(|of| dot(of, &rest)));
+        let bend = |damping: f64| {
+            DMatrix::from_fn(free.len(), free.len(), |i, j| {
+                let damped = if i == j { 1.0 + damping } else { 1.0 };
+                damped * dot(&slopes[i], &slopes[j])
+            })
+        };
+        DAMPINGS.into_iter().find_map(|damping| {
+            let moves = bend(damping).cholesky()?.solve(&rise);
+            let mut at = from.at;
             for (&axis, by) in free.iter().zip(&moves) {
                 let points = &self.axes[axis].points;
-                let to = next[axis] + share * by * self.step[axis];
-                next[axis] = to.clamp(points[0], points[points.len() - 1]);
+                let to = at[axis] + by * self.step[axis];
+                at[axis] = to.clamp(points[0], points[points.len() - 1]);
             }
-            next
-        });
-        let mut points = points.into_iter().map(|at| self.point(at));
-        points.find(|point| point.height > from.height)
-    }
-
-    /// The step to the top of the parabola through the points beside, along the free axes; where that has no top, one step upwards along
-    /// each.
-    fn newton(&self, from: Point, free: &[usize]) -> Vec<f64> {
-        let number = free.len();
-        let mut slope = DVector::zeros(number);
-        let mut bend = DMatrix::zeros(number, number);
-        for (i, &a) in free.iter().enumerate() {
-            let [before, after] = [-1.0, 1.0].map(|by| self.beside(from, &[(a, by)]));
-            slope[i] = 0.5 * (after - before);
-            bend[(i, i)] = 2.0 * from.height - before - after;
-            for (j, &b) in free.iter().enumerate().take(i) {
-                let corner = |one, other| self.beside(from, &[(a, one), (b, other)]);
-                let same = corner(1.0, 1.0) + corner(-1.0, -1.0);
-                // The lower triangle alone is read.
-                bend[(i, j)] = 0.25 * (corner(1.0, -1.0) + corner(-1.0, 1.0) - same);
-            }
-        }
-        let moves = match bend.cholesky() {
-            Some(factor) => factor.solve(&slope),
-            None => slope.map(f64::signum),
-        };
-        moves.as_slice().to_vec()
+            let next = self.point(at);
+            (next.height > from.height).then_some(next)
+        })
     }
 }
