@@ -17,8 +17,10 @@ const SPANS: f64 = 3.0;
 const SPREADS: [f64; 2] = [0.01, 10.0];
 /// Cells of the search for the spread, a factor of 1.3 wide.
 const SPREAD_CELLS: u32 = 24;
-/// Cells of the search for the midpoint between two depths, where a steep fall is.
+/// Cells of the search for the midpoint between two depths, where a steep fall is, and so many spreads from either, where all answers
+/// but those at this depth are alike.
 const MIDPOINT_CELLS: u32 = 8;
+const SPREADS_FROM_DEPTH: [f64; 2] = [4.0, 8.0];
 
 /// The psychometric function ½ + (½ − λ) Φ((m − d)/s) of the depth d that fits a condition best.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -117,7 +119,18 @@ impl Model {
     /// The best midpoint for a spread.
     fn over_midpoints(&self, log_spread: f64, lapse: Option<f64>) -> (f64, f64) {
         let value = |m| self.value(m, log_spread, lapse);
-        largest(value, &self.midpoints, MIDPOINT_CELLS)
+        let away = SPREADS_FROM_DEPTH.map(|spreads| spreads * libm::exp(log_spread));
+        let near = |pair: &[f64]| {
+            let [a, b] = [pair[0], pair[1]];
+            let mut all = vec![a];
+            all.extend(away.iter().flat_map(|away| [a + away, b - away]));
+            all.retain(|m| (a..b).contains(m));
+            all
+        };
+        let mut ends: Vec<f64> = self.midpoints.windows(2).flat_map(near).collect();
+        ends.extend(self.midpoints.last());
+        ends.sort_by(f64::total_cmp);
+        largest(value, &ends, MIDPOINT_CELLS)
     }
 
     /// The best spread for a midpoint.

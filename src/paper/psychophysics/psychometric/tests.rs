@@ -72,6 +72,28 @@ fn a_steep_fall_between_two_depths_is_found() {
     assert_near(found.deviance, 3.078235205866136, 1e-7);
 }
 
+/// Where only the deepest inclusion is missed, in a share p, each spread has the midpoint that explains it: Φ((m − d)/s) = 1 − 2p, so
+/// that the deviance is 0 whatever the spread, down to the least that is searched.
+// Verifies: PSY-040.
+#[test]
+fn a_fall_at_the_last_depth_bounds_no_spread_from_below() {
+    for (depths, counts) in [
+        ("2.6,4.6,6.6,8.6", "30,30,30"),
+        ("9,10,11,13,17", "30,30,30,30"),
+    ] {
+        let subjects = [28, 29, 27, 30].map(|last| format!("{last},c,30,{counts},{last}\n"));
+        let text = format!("subject,condition,trials,{depths}\n{}", subjects.concat());
+        let found = fitted(&AnswerTable::from_csv(&text, "t").unwrap(), 0).unwrap();
+        let spread = found.spread_m;
+        assert_near(found.deviance, 0.0, 1e-7);
+        assert_eq!(
+            [spread.bounds.lower, spread.dispersed_bounds.lower],
+            [None; 2]
+        );
+        assert!(spread.bounds.upper.is_some());
+    }
+}
+
 // φ of direct contact is (41.3194 + 47.3455 + 43.1060 + 22.2)/36 = 4.2770; scipy: f.sf(0.1524763/4.2769680, 1, 36).
 // Verifies: PSY-034, PSY-042.
 #[test]
