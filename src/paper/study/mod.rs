@@ -177,6 +177,12 @@ impl StudyPlan {
         for (at, input) in self.inputs.iter().enumerate() {
             let of_input = |refusal: Refusal| refusal.under(&format!("input[{at}]"));
             self.check(input).map_err(of_input)?;
+            let is_replaced = self.inputs[..at].iter().any(|of| of.key == input.key);
+            let expected =
+                "a key of no earlier input, whose value this one replaces; or give another change";
+            let wrong = Refusal::value("key", format!("{:?}", input.key), expected);
+            let wrong = wrong.when(is_replaced && input.change == Change::Value);
+            wrong.map_err(of_input)?;
         }
         Design::new(&names, &self.correlations, self.rows, self.seed)
     }

@@ -495,6 +495,10 @@ fn inputs_that_make_no_study_are_refused_with_their_key() {
         let expected = format!("input[1].key = {key:?}, but must be the key");
         begins(refused(&|input| input.key = key.into()), &expected);
     }
+    let replaces = refused(&|input| input.key = "layer[0].thickness_mm".into());
+    let expected =
+        "input[1].key = \"layer[0].thickness_mm\", but must be a key of no earlier input";
+    begins(replaces, expected);
     let nowhere = refused(&|input| input.source.clear());
     begins(
         nowhere,
