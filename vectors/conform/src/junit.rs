@@ -26,7 +26,8 @@ pub fn junit(verdict: &Verdict, suite: &Suite) -> String {
     // Writing to a String cannot fail.
     let _ = writeln!(
         text,
-        "<testsuites name=\"palpate-conform, vectors {}\" {}>",
+        "<testsuites name=\"palpate-conform, profile {}, vectors {}\" {}>",
+        escaped(&verdict.measure.profile.in_words()),
         verdict.suite_sha256,
         totals(&all, "")
     );

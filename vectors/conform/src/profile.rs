@@ -71,6 +71,11 @@ impl Profile {
         let text = std::fs::read_to_string(path)
             .map_err(|error| format!("{error}; a profile is exact, f64, f32 or a JSON file"))?;
         let profile: Profile = serde_json::from_str(&text).map_err(|error| error.to_string())?;
+        ensure!(
+            !["exact", "f64", "f32"].contains(&&*profile.name),
+            "name = {:?} is that of another profile; give a name of its own",
+            profile.name
+        );
         let (u, smallest, largest) = (profile.unit_roundoff, profile.smallest, profile.largest);
         ensure!(
             (0.0..=0.25).contains(&u),
@@ -81,6 +86,14 @@ impl Profile {
             "smallest = {smallest} and largest = {largest}, but 0 < smallest < 1 <= largest must hold"
         );
         Ok(profile)
+    }
+
+    /// Its name and unit roundoff.
+    pub(crate) fn in_words(&self) -> String {
+        match self.unit_roundoff {
+            0.0 => self.name.clone(),
+            u => format!("{} (unit roundoff {u:.2e})", self.name),
+        }
     }
 
     /// Whether a case is beyond what a careful program of this precision can answer: an argument whose square leaves the range, an

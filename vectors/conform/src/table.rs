@@ -54,7 +54,7 @@ pub fn table(verdict: &Verdict) -> String {
         section("not right", listed),
         notes.collect::<String>(),
         apart.collect::<String>(),
-        verdict.measure.profile.name,
+        verdict.measure.profile.in_words(),
         verdict.suite_sha256
     )
 }

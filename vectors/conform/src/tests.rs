@@ -416,7 +416,7 @@ fn a_group_fails_of_which_no_value_is_right() {
     // Extreme and accepted answers are not as they should be.
     measure.accepted = [("a-0".into(), "known".into())].into();
     let text = table(&verdict(&suite, &measure, vec![near, refused, right]));
-    let last = "\n1 of 3 cases as they should be, 1 accepted, 1 extreme, 0 skipped; profile f32; ";
+    let last = "\n1 of 3 cases as they should be, 1 accepted, 1 extreme, 0 skipped; profile f32 (unit roundoff 5.96e-8); ";
     assert!(text.contains(last), "{text}");
     // Of an op that is not claimed or not asked there is nothing to show.
     let unclaimed = vec![Outcome::Unclaimed("roc".into()); 3];

@@ -55,6 +55,7 @@ fn a_profile_widens_the_tolerance_by_the_condition() {
         { | coarse.json, EOF
         {"name":"a","unit_roundoff":1,"smallest":0.1,"largest":9} | coarse.json, unit_roundoff = 1
         {"name":"a","unit_roundoff":0.1,"smallest":2,"largest":9} | coarse.json, smallest = 2
+        {"name":"exact","unit_roundoff":0.1,"smallest":0.1,"largest":9} | coarse.json, name = "exact" is that of another profile
         "#,
     ) {
         coarse(text);
@@ -216,7 +217,7 @@ fn the_verdict_for_ci_holds_every_case_and_is_the_same_each_time() {
     assert_eq!(output.status.code(), Some(1));
     let text = stdout(&output);
     assert_eq!(text, stdout(&again));
-    assert!(text.starts_with("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites "));
+    assert!(text.starts_with("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"palpate-conform, profile exact, vectors "));
     for (part, count) in [
         (
             r#"<testsuite name="choice" tests="4" failures="1" errors="0" skipped="0">"#,
