@@ -155,16 +155,17 @@ impl Recording {
     /// the same to the bit.
     ///
     /// # Errors
-    /// The first cycle with another force report; cycles after those that end the session; a device
-    /// that [`Session::begin`] refuses.
+    /// No cycle that played the table; the first cycle with another force report; cycles after those that end the session; a device that
+    /// [`Session::begin`] refuses.
     ///
     /// Implements: HID-052.
     pub fn replay(&self, table: Table) -> Result<usize, Refusal> {
         let mut session = Session::begin(Recorded::new(self), table, self.limits)?;
         let recorded = self.cycles.len();
-        if recorded == 0 {
-            return Ok(0);
-        }
+        // Forces that no table gave say nothing of this one.
+        let is_none_played = self.cycles.iter().all(|cycle| !cycle.playing);
+        let nothing = format!("{recorded} cycles, of which none played the table");
+        Refusal::state(nothing, "record a session that does").when(is_none_played)?;
         let (mut same, mut difference) = (0, None);
         let end = session.run(|cycle, _| {
             let recorded = &self.cycles[same];

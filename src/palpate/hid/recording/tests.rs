@@ -74,6 +74,15 @@ fn a_recording_plays_again_to_the_bit_and_tells_where_it_differs() {
     assert_eq!(recording.replay(table(3.2)), Ok(700));
     let differs = recording.replay(table(3.3)).unwrap_err();
     assert!(differs.found.starts_with("cycle 2"), "{differs}");
+    // A session that did not begin to play shows nothing of the table.
+    let begins = recording.cycles.iter().position(|cycle| cycle.playing);
+    for cycles in [0, begins.unwrap()] {
+        let mut short = recording.clone();
+        short.cycles.truncate(cycles);
+        let nothing = format!("{cycles} cycles, of which none played the table");
+        let refused = short.replay(table(3.2)).unwrap_err();
+        assert_eq!(refused.found, nothing);
+    }
     type Spoil = fn(&mut RecordedCycle);
     let spoils: [(usize, Spoil); 4] = [
         (650, |cycle| cycle.force.lateral += 1),
