@@ -1,10 +1,10 @@
 //! JSON: documents with a schema, and their layout.
 
-use std::io;
+use std::{fmt, io};
 
-use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde::de::{DeserializeOwned, Error as _, MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use serde_json::{Map, Value};
 
 use super::refusal;
 use crate::refusal::{Refusal, shortened};
@@ -16,6 +16,34 @@ struct Header {
     schema: Value,
     #[serde(default)]
     schema_version: Value,
+}
+
+/// The members of an object with any keys, none of which is there twice.
+#[derive(Default)]
+pub(crate) struct Members(pub Map<String, Value>);
+
+impl<'de> Deserialize<'de> for Members {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Members, D::Error> {
+        from.deserialize_map(Members::default())
+    }
+}
+
+impl<'de> Visitor<'de> for Members {
+    type Value = Members;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(mut self, mut access: A) -> Result<Members, A::Error> {
+        while let Some((key, value)) = access.next_entry::<String, Value>()? {
+            let twice = format!("duplicate field `{key}`");
+            if self.0.insert(key, value).is_some() {
+                return Err(A::Error::custom(twice));
+            }
+        }
+        Ok(self)
+    }
 }
 
 /// A document as JSON, each row of a matrix on one line.

@@ -17,7 +17,7 @@ use std::path::Path;
 
 use serde_path_to_error::Path as KeyPath;
 
-pub(crate) use json::message;
+pub(crate) use json::{Members, message};
 pub use json::{check_schema, from_json, to_json};
 pub(crate) use toml::Tree;
 pub use toml::from_toml;

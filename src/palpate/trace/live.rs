@@ -1,9 +1,10 @@
 //! Samples that come line by line, as CSV or JSON.
 
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use super::{COLUMNS, REQUIRED};
 use crate::csv::{Column, Layout, Rows, is_comment};
+use crate::file::Members;
 use crate::refusal::Refusal;
 
 /// Those of a trace over positions.
@@ -141,7 +142,7 @@ impl LiveSamples {
 
 /// An object as a header of its keys and a row of its values: text without the marks of CSV, lists and objects as a word.
 fn object(text: &str) -> Result<[String; 2], Refusal> {
-    let object: Map<String, Value> = serde_json::from_str(text).map_err(|error| {
+    let Members(object) = serde_json::from_str(text).map_err(|error| {
         let right = r#"give an object such as {"position_mm": -1, "normal_force_n": 1.5}"#;
         Refusal::state(crate::file::message(&error), right)
     })?;
@@ -292,6 +293,10 @@ mod tests {
             (
                 &[r#"{"position_mm": 1, "normal_force_n": [1]}"#],
                 "-:1: normal_force_n = \"[...]\", but must be",
+            ),
+            (
+                &[r#"{"position_mm": 1, "normal_force_n": 2, "normal_force_n": 3}"#],
+                "-:1: duplicate field `normal_force_n`",
             ),
             (&["{"], "-:1: "),
             (

@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use super::budget::{Budget, Judged, Responses};
 use crate::csv::{Column, Rows};
 use crate::decimal::parse_scaled;
+use crate::file::Members;
 use crate::refusal::{Refusal, shortened};
 
 /// The names of durations and then of time stamps, with the power of ten from their unit to seconds.
@@ -110,8 +111,14 @@ fn of_json_lines(text: &str) -> Result<(&'static str, Numbers), Refusal> {
     let lines = text.lines().enumerate();
     for (line, text) in lines.filter(|(_, text)| !text.trim().is_empty()) {
         let line = line + 1;
-        let object: Map<String, Value> = serde_json::from_str(text)
+        let Members(object) = serde_json::from_str(text)
             .map_err(|error| Refusal::state(format!("no JSON object: {error}"), give()).at(line))?;
+        for names in COLUMN {
+            let mut there = names.iter().filter(|(name, _)| object.contains_key(*name));
+            if let (Some((a, _)), Some((b, _))) = (there.next(), there.next()) {
+                return Err(Refusal::state(format!("{a} and {b}"), "give one of them").at(line));
+            }
+        }
         let mut names = COLUMN.iter().copied().flatten();
         let named = found.or_else(|| names.find(|(name, _)| object.contains_key(*name)).copied());
         let (name, power) =
