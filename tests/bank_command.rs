@@ -159,6 +159,7 @@ fn renumbered(line: &str) -> String {
 fn what_was_kept_of_another_bank_is_refused_and_stays() {
     let place = Place::new("bank-other");
     let other = "bank.json.part: belongs to a different request or version; finish that run or delete the file";
+    let none = "bank.json.part: is no journal of 'palpate bank'; choose another file";
     let version = env!("CARGO_PKG_VERSION");
     let missing = "bank.json.part:2: column 2: number is missing";
     let wrong =
@@ -171,8 +172,8 @@ fn what_was_kept_of_another_bank_is_refused_and_stays() {
         (replaced(mesh, "\"mesh_size_m\":0.003"), other),
         (replaced(version, "9.9.9"), other),
         (replaced(arithmetic, "arithmetic\":\"not "), other),
-        ("notes of mine".into(), other),
-        ("notes\nof mine\n".into(), other),
+        ("notes of mine".into(), none),
+        ("notes\nof mine\n".into(), none),
         (with("{}"), missing),
         (with("{\"number\":9,\"maps\":[]}"), wrong),
         (with("{\"number\":0,\"maps\":[]}"), wrong),

@@ -134,10 +134,19 @@ impl<F: Store> Lines<F> {
         let mut whole = 0;
         if first == request.as_bytes() {
             whole = take_lines(reader, &path, 2, take)? + first.len() as u64;
-        } else if !is_only_begun(&first, request) || take_lines(reader, &path, 2, |_| Ok(()))? > 0 {
-            let found =
-                "belongs to a different request or version; finish that run or delete the file";
-            return Err(refused(found.into()));
+        } else if !is_of_kind(&first, request) {
+            let found = format!("is no journal of '{command}'; choose another file");
+            return Err(refused(found));
+        } else {
+            if !first.ends_with(b"\n") {
+                let rest = reader.skip_until(b'\n');
+                rest.map_err(failed("read", &path))?;
+            }
+            if take_lines(reader, &path, 2, |_| Ok(()))? > 0 {
+                let found =
+                    "belongs to a different request or version; finish that run or delete the file";
+                return Err(refused(found.into()));
+            }
         }
         let mut lines = Lines { path, file, whole };
         lines.append(if whole == 0 { request } else { "" })?;
@@ -162,7 +171,7 @@ fn put(file: &mut impl Store, at: u64, text: &str) -> io::Result<()> {
 }
 
 /// Whether `first` is the first line, or the beginning of the first line, of a journal of the same kind as that of a request.
-fn is_only_begun(first: &[u8], request: &str) -> bool {
+fn is_of_kind(first: &[u8], request: &str) -> bool {
     let schema = request.split(',').next().unwrap_or(request).as_bytes();
     first.starts_with(schema) || schema.starts_with(first)
 }

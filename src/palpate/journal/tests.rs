@@ -459,13 +459,20 @@ fn what_was_finished_for_another_request_is_refused_and_stays() {
         |request: &str| Lines::open(Open::new(&disk), "f".into(), request, "job", |_| Ok(()));
     let other = REQUEST.replace('1', "2");
     open(REQUEST).unwrap();
-    // Nothing was finished yet.
+    // Nothing was finished yet, also of a request with a longer first line.
+    open(&REQUEST.replace('1', "123")).unwrap();
     let mut lines = open(&other).unwrap();
     lines.append("1\n").unwrap();
     drop(lines);
-    let refused =
+    let other_request =
         "f: belongs to a different request or version; finish that run or delete the file";
-    for request in [REQUEST, "{\"schema\":\"other\",\"seed\":2}\n"] {
+    for (request, refused) in [
+        (REQUEST, other_request),
+        (
+            "{\"schema\":\"other\",\"seed\":2}\n",
+            "f: is no journal of 'job'; choose another file",
+        ),
+    ] {
         assert_error(open(request), refused);
         assert_eq!(disk.borrow().seen, format!("{other}1\n").as_bytes());
     }
