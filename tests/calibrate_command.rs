@@ -59,6 +59,15 @@ fn the_curve_of_the_demo_says_what_the_demo_put_into_it() {
     place.succeed("detect demo/sweep-with.csv --reference demo/none.json --inclusion demo/inclusion.json --depth-mm 4 --gel-uncertainty known.toml");
 }
 
+// Verifies: CAL-042.
+#[test]
+fn a_curve_counts_once_whatever_its_name() {
+    let place = place();
+    let refused = place.refused("calibrate demo/curve.csv ./demo/curve.csv --phantom none");
+    let expected = "./demo/curve.csv: the same samples as demo/curve.csv; name each curve once";
+    assert!(refused.contains(expected), "{refused}");
+}
+
 // Verifies: CAL-034, CLI-176.
 #[test]
 fn several_curves_are_told_apart_and_together() {
@@ -129,7 +138,7 @@ fn a_curve_that_cannot_be_judged_writes_no_phantom() {
     let line = "calibrate demo/curve.csv air.csv --phantom none --out gel.toml --figure both.svg";
     let output = place.run(line);
     assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
-    let message = "palpate: air.csv: cannot be judged: the force does not rise above offset, drift and noise; press deeper\n";
+    let message = "palpate: air.csv: cannot be judged: the force does not rise above offset, drift and noise; press deeper, or remove samples that are far from their neighbours\n";
     assert!(
         text(&output.stderr).ends_with(message),
         "{}",

@@ -66,7 +66,7 @@ fn solve_prints_the_librarys_map_by_either_contact_law() {
         (vertical, Contact::VerticalGap),
     ] {
         let model = Model::new(&phantom, 2e-3, contact).unwrap();
-        let map = model.map(&depths, &laterals, &|_| ()).unwrap();
+        let map = model.map(&depths, &laterals, &|_| true).unwrap();
         let printed = |format: &str| here.succeed(&format!("{arguments} {option} {format}"));
         let json = printed("--format json");
         assert_eq!(ForceMap::from_json(&json, "standard output").unwrap(), map);
@@ -499,9 +499,14 @@ fn no_file_is_read_and_then_overwritten() {
         "solve --phantom gel.toml --depths-mm 1 --laterals-mm 0 --mesh-mm 2 --vtu=./gel.toml",
         "reach --bank bank.svg --noise-sd-n 0.1 --figure bank.svg",
         "play --record gel.toml --map=gel.toml",
+        "calibrate curve.csv --phantom gel.toml --uncertainty-out gel.toml",
+        "experiment --reference gel.toml --inclusion 2=bank.svg --seed 1 --journal gel.toml",
+        "calibrate curve.csv --phantom gel.toml --out new.toml --uncertainty-out ./new.toml",
+        "calibrate curve.csv --phantom gel.toml --out new.svg --figure new.svg",
     ] {
         let refused = here.refused(line);
-        let expected = "is read by this command, which would overwrite it; choose another --";
+        let expected =
+            "is named twice in this command, which would overwrite it; choose another --";
         assert!(refused.contains(expected), "{line}: {refused}");
         for file in ["gel.toml", "bank.svg"] {
             assert_eq!(here.read(file), phantom, "{line}");

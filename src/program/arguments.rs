@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 use std::fs::canonicalize;
+use std::path::Path;
 
 use clap::{Parser, Subcommand};
 
@@ -114,9 +115,9 @@ pub(super) enum Command {
 }
 
 /// The options that name a file to write.
-const OUTPUTS: [&str; 5] = ["--out", "--figure", "--record", "--vtu", "--pvd"];
+const OUTPUTS: &str = "--out --uncertainty-out --figure --record --journal --vtu --pvd";
 
-/// Refuses a file to write that another argument names too, so that no file is read and then lost.
+/// Refuses a file to write that another argument names too, so that no file is read and then lost, and none is written twice.
 ///
 /// Implements: CLI-236.
 pub fn check_outputs(arguments: &[OsString]) -> Result<(), CliError> {
@@ -127,11 +128,25 @@ pub fn check_outputs(arguments: &[OsString]) -> Result<(), CliError> {
         [name, value].map(String::from)
     };
     let arguments: Vec<_> = arguments.iter().map(apart).collect();
-    let file = |value: &str| canonicalize(value).ok().filter(|path| path.is_file());
-    let files: Vec<_> = arguments.iter().map(|[_, value]| file(value)).collect();
-    for (at, [name, value]) in arguments.iter().enumerate() {
+    let option = |at: usize| {
         let before = at.checked_sub(1).map_or("", |before| &arguments[before][1]);
-        let Some(option) = OUTPUTS.iter().find(|of| [name, before].contains(of)) else {
+        let mut outputs = OUTPUTS.split(' ');
+        outputs.find(|of| [&arguments[at][0], before].contains(of))
+    };
+    // A file that is not there yet is that of its name in its folder, if it is to be written: any other word is no file.
+    let file = |at: usize| {
+        let path = Path::new(&arguments[at][1]);
+        let new = option(at).and_then(|_| {
+            let folder = path.parent().filter(|of| !of.as_os_str().is_empty());
+            let folder = canonicalize(folder.unwrap_or(Path::new("."))).ok()?;
+            Some(folder.join(path.file_name()?))
+        });
+        let file = canonicalize(path).ok().or(new);
+        file.filter(|file| file.is_file() || !file.exists())
+    };
+    let files: Vec<_> = (0..arguments.len()).map(file).collect();
+    for (at, [_, value]) in arguments.iter().enumerate() {
+        let Some(option) = option(at) else {
             continue;
         };
         let same = files
@@ -139,7 +154,7 @@ pub fn check_outputs(arguments: &[OsString]) -> Result<(), CliError> {
             .filter(|file| file.is_some() && **file == files[at]);
         if same.count() > 1 {
             refuse!(
-                "{value} is read by this command, which would overwrite it; choose another {option}"
+                "{value} is named twice in this command, which would overwrite it; choose another {option}"
             );
         }
     }

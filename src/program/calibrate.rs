@@ -64,7 +64,7 @@ pub struct CalibrateArguments {
 
 /// Runs the command.
 ///
-/// Implements: CLI-176, CLI-017, CLI-003, CLI-015.
+/// Implements: CLI-176, CLI-017, CLI-003, CLI-015, CAL-042.
 pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), CliError> {
     let phantom = arguments.phantom.as_deref().map(phantom).transpose()?;
     let layers = layers(arguments, phantom.as_ref())?;
@@ -78,6 +78,14 @@ pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), CliError> {
         .iter()
         .map(|path| Curve::read(path, &layout));
     let curves = curves.collect::<Result<Vec<_>, _>>()?;
+    for (at, curve) in curves.iter().enumerate() {
+        let samples = |of: &Curve| [of.depths(), of.forces()].concat();
+        let mut before = curves[..at].iter();
+        if let Some(same) = before.find(|of| samples(of) == samples(curve)) {
+            let (file, same) = (curve.file(), same.file());
+            refuse!("{file}: the same samples as {same}; name each curve once");
+        }
+    }
     let Some(laterals) = for_each(&arguments.laterals, curves.len()) else {
         let positions = arguments.laterals.len();
         refuse!("--lateral-mm has {positions} positions; give one, or one for each curve")

@@ -74,6 +74,20 @@ fn add_lines(key: &str, value: &Value, lines: &mut String) {
     }
 }
 
+/// The files of a folder that are wanted, by their names.
+pub fn files_in(
+    folder: &Path,
+    is_wanted: impl Fn(&Path) -> bool,
+) -> Result<Vec<PathBuf>, CliError> {
+    let entries = folder.read_dir().map_err(CliError::file("read", folder))?;
+    let files = entries.map(|entry| Ok(entry?.path()));
+    let files = files.collect::<Result<Vec<_>, Error>>();
+    let mut files = files.map_err(CliError::file("read", folder))?;
+    files.retain(|file| is_wanted(file));
+    files.sort();
+    Ok(files)
+}
+
 /// A field of CSV, in quotes where it needs them.
 pub(super) fn quoted(field: &str) -> Cow<'_, str> {
     if field.contains([',', '"', '\n', '\r']) {
@@ -81,6 +95,12 @@ pub(super) fn quoted(field: &str) -> Cow<'_, str> {
     } else {
         field.into()
     }
+}
+
+/// A line of CSV.
+pub fn csv_line(fields: impl IntoIterator<Item = String>) -> String {
+    let fields = fields.into_iter().map(|field| quoted(&field).into_owned());
+    fields.collect::<Vec<_>>().join(",") + "\n"
 }
 
 /// An answer or a request in JSON, with the name and version of its keys before it.
@@ -220,16 +240,20 @@ pub fn write_new(path: &Path, text: &str) -> Result<(), CliError> {
     file::write_new(path, text).map_err(CliError::file("write", path))
 }
 
-/// The name of a file for a figure; one whose ending is that of another format is refused.
+/// The name of a file for a figure.
+pub fn svg_file() -> impl TypedValueParser<Value = PathBuf> {
+    file_of("svg", "figures are SVG")
+}
+
+/// The name of a file; one whose ending is that of another format than its own is refused.
 ///
 /// Implements: CLI-237.
-pub fn svg_file() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|path| {
-        let is_svg = path
-            .extension()
-            .is_none_or(|ending| ending.eq_ignore_ascii_case("svg"));
-        let wrong = "figures are SVG; choose a name that ends in .svg";
-        is_svg.then_some(path).ok_or(wrong)
+pub fn file_of(format: &'static str, what: &'static str) -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(move |path| {
+        let ending = path.extension();
+        let is_of = ending.is_none_or(|ending| ending.eq_ignore_ascii_case(format));
+        let wrong = || format!("{what}; choose a name that ends in .{format}");
+        is_of.then_some(path).ok_or_else(wrong)
     })
 }
 

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use super::CliError;
 use super::error::refuse;
 use super::numbers::{List, contact, depths, friction, length, positions};
-use super::output::{print, warn, write};
+use super::output::{file_of, print, warn, write};
 use super::progress::{bar, tell_large_mesh};
 use palpate::decimal::{format_scaled, mm};
 use palpate::fem::certify::certified_map;
@@ -46,7 +46,7 @@ pub struct SolveArguments {
     #[arg(long, conflicts_with_all = ["certify", "vtu"])]
     path: bool,
     /// Writes the deformed mesh of each pose of the path for ParaView
-    #[arg(long, value_name = "FILE.pvd", requires = "path")]
+    #[arg(long, value_name = "FILE.pvd", requires = "path", value_parser = file_of("pvd", "the list of the poses is PVD"))]
     pvd: Option<PathBuf>,
     /// Output format
     #[arg(long, value_enum, default_value_t = MapFormat::Table)]
@@ -135,7 +135,10 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     let meshes = if arguments.certify { 3 } else { 1 };
     let columns = model.solved_laterals(laterals).len();
     let bar = bar(meshes * depths.len() * columns, phantom.name());
-    let solved = |poses| bar.inc(poses as u64);
+    let solved = |poses| {
+        bar.inc(poses as u64);
+        true
+    };
     let map = if arguments.certify {
         certified_map(&model, depths, laterals, &solved)
     } else {

@@ -11,6 +11,7 @@ fn bad_arguments_are_refused_in_one_line() {
     place().write("wrong.toml", "height_percent = -1");
     place().write("unknown.toml", "height_mm = 1");
     let with = place().read("with.csv");
+    place().write("copy.csv", &with);
     let (before, _) = with.trim_end().rsplit_once(',').unwrap();
     place().write("huge.csv", format!("{before},1e300\n"));
     place().refuses("detect robust", |words| {

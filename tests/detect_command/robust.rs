@@ -66,13 +66,13 @@ fn slow_noise_of_a_blank_sweep_counts_more_and_is_told_as_it_is() {
 #[test]
 fn a_lateral_force_that_is_none_or_of_the_other_sign_gives_no_answer() {
     let [_, map] = maps(place());
-    let write = |factor: f64, stream| {
+    let write = |factor: f64, of_normal: f64, stream| {
         let generator = Generator::new(20_261_128, stream);
         let rows = (0..).zip(sweep(map.table()));
         let rows = rows.map(|(i, [x, lateral, normal])| {
             let noise = [0, 1].map(|channel| 0.01 * generator.normal(channel, i));
             let lateral = factor * (lateral + noise[0]);
-            format!("{x},{lateral:e},{:e}\n", normal + noise[1])
+            format!("{x},{lateral:e},{:e}\n", of_normal * (normal + noise[1]))
         });
         let head = "position_mm,lateral_force_n,normal_force_n\n";
         place().write("lateral.csv", format!("{head}{}", rows.collect::<String>()));
@@ -89,7 +89,7 @@ fn a_lateral_force_that_is_none_or_of_the_other_sign_gives_no_answer() {
             (-1.0, "cannot_be_judged", json!(["channels"]), 3),
             (0.0, "cannot_be_judged", json!(["saturated"]), 3),
         ] {
-            write(factor, stream);
+            write(factor, 1.0, stream);
             let (found, ended) = asked();
             let expected = (&json!(decision), &causes, Some(code));
             assert_eq!(
@@ -99,6 +99,9 @@ fn a_lateral_force_that_is_none_or_of_the_other_sign_gives_no_answer() {
             );
         }
     }
+    // Only one force in another unit: that is what is wrong, not the other one.
+    write(1.0, 1e3, 2);
+    assert_eq!(asked().0["causes"], json!(["force_unit"]));
 }
 
 // Verifies: ROB-085.

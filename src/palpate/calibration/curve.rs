@@ -197,6 +197,13 @@ impl Curve {
         }
     }
 
+    /// The curve with the opposite sign of its forces.
+    pub(super) fn negated(&self) -> Curve {
+        let forces = self.forces.iter().map(|force| -force).collect();
+        let own = self.clone();
+        Curve { forces, ..own }
+    }
+
     /// How long the probe stayed at its depth, s, if long enough that a relaxation can be seen.
     pub(super) fn held_seconds(&self) -> Option<f64> {
         let (times, from) = (self.times.as_ref()?, self.reached());

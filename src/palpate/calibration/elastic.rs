@@ -55,7 +55,7 @@ impl Gel {
         let depth = |k: i32| deepest * libm::exp(ratio * f64::from(k));
         let depths: Vec<f64> = (0..DEPTHS).rev().map(depth).collect();
         let model = Model::new(phantom, asked.mesh_size, Contact::default())?;
-        let map = |model: &Model| model.map(&depths, &[asked.lateral], &|_| ());
+        let map = |model: &Model| model.map(&depths, &[asked.lateral], &|_| true);
         let logarithms = |map: &ForceMap| -> Vec<f64> {
             let forces = map.table().normal().values().iter();
             forces.map(|force| libm::log(*force)).collect()

@@ -52,6 +52,8 @@ pub struct CalibrationQuestion<'a> {
 pub enum CurveCause {
     /// Offset and drift of the sensor explain it as well.
     NoContact,
+    /// Its forces have the opposite sign.
+    Sign,
     /// It begins in contact with the gel, or a sensor without drift would say so.
     NoAir,
     /// It differs from the best fit by more than noise and 0.5 % of its forces.
@@ -63,7 +65,10 @@ impl CurveCause {
     pub fn in_words(self) -> &'static str {
         match self {
             CurveCause::NoContact => {
-                "the force does not rise above offset, drift and noise; press deeper"
+                "the force does not rise above offset, drift and noise; press deeper, or remove samples that are far from their neighbours"
+            }
+            CurveCause::Sign => {
+                "the force falls as the probe presses; reverse its sign: a force that pushes the probe up is positive"
             }
             CurveCause::NoAir => {
                 "the curve does not begin above the gel; begin it higher, or say where the probe touches"
@@ -221,7 +226,11 @@ pub fn calibrate<'a>(
     let Some(mut start) = empirical_law(&way, drifts) else {
         let none = (Relaxation::None, None);
         let found = Calibration::new(curve, still, Elastic::Empirical, none);
-        return Ok(found.of_cause(CurveCause::NoContact));
+        let cause = match empirical_law(&way.negated(), drifts) {
+            Some(_) => CurveCause::Sign,
+            None => CurveCause::NoContact,
+        };
+        return Ok(found.of_cause(cause));
     };
     let contact = question.contact.unwrap_or(1e-3 * start[0]);
     if curve.air(contact) < LEAST_AIR {

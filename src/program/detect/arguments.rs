@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use crate::CliError;
 use crate::error::refuse;
 use crate::layout::LayoutArguments;
 use crate::numbers::{length_or_zero, newtons, position, probability, sure_probability, velocity};
 use crate::output::{note, svg_file};
-use crate::{CliError, Format};
 use palpate::csv::Layout;
 use palpate::force::Force;
 use palpate::robust::Part;
@@ -46,16 +46,6 @@ pub(super) enum AnswerFormat {
     Json,
     /// One line for each record.
     Csv,
-}
-
-impl AnswerFormat {
-    /// That of one answer.
-    pub fn of_one(self) -> Format {
-        match self {
-            AnswerFormat::Json => Format::Json,
-            AnswerFormat::Table | AnswerFormat::Csv => Format::Table,
-        }
-    }
 }
 
 /// What the record may hold beside an inclusion.

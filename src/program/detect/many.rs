@@ -12,21 +12,12 @@ use serde_json::Value;
 
 use super::arguments::AnswerFormat;
 use super::records::{Asked, Detector, tell_glitches};
-use crate::output::{Envelope, note, print, quoted};
+use crate::output::{Envelope, csv_line, files_in, note, print};
 use crate::progress::bar;
 use crate::{CliError, error::refuse};
 
 /// The columns of the table of records in CSV.
-const COLUMNS: [&str; 8] = [
-    "trace",
-    "decision",
-    "posterior_h1",
-    "theta",
-    "false_alarm",
-    "miss",
-    "causes",
-    "error",
-];
+const HEADER: &str = "trace,decision,posterior_h1,theta,false_alarm,miss,causes,error";
 
 /// The files that the command line names: itself, or those of a folder that end in `.csv`, by their names.
 ///
@@ -38,15 +29,10 @@ pub fn traces(named: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
             traces.push(path.clone());
             continue;
         }
-        let folder = std::fs::read_dir(path).map_err(CliError::file("read", path))?;
-        let files = folder.map(|entry| Ok(entry?.path()));
-        let files = files.collect::<Result<Vec<_>, std::io::Error>>();
-        let mut files = files.map_err(CliError::file("read", path))?;
-        files.retain(|file| {
-            file.extension()
-                .is_some_and(|end| end.eq_ignore_ascii_case("csv"))
-        });
-        files.sort();
+        let mut files = files_in(path, |file| {
+            let end = file.extension();
+            end.is_some_and(|end| end.eq_ignore_ascii_case("csv"))
+        })?;
         if files.is_empty() {
             refuse!("{}: no file ends in .csv", path.display());
         }
@@ -183,14 +169,8 @@ fn tell(format: AnswerFormat, answers: Vec<Answer>) -> Result<(), CliError> {
     let lines: String = match format {
         AnswerFormat::Table => table(&answers),
         AnswerFormat::Csv => {
-            let line = |answer| {
-                COLUMNS
-                    .map(|key| quoted(&field(answer, key)).into_owned())
-                    .join(",")
-                    + "\n"
-            };
-            let header = COLUMNS.join(",") + "\n";
-            header + &answers.iter().map(line).collect::<String>()
+            let line = |answer| csv_line(HEADER.split(',').map(|key| field(answer, key)));
+            format!("{HEADER}\n") + &answers.iter().map(line).collect::<String>()
         }
         AnswerFormat::Json => {
             let line = |answer: &Answer| {

@@ -13,9 +13,9 @@ use serde_json::json;
 
 use super::CliError;
 use super::error::refuse;
-use super::output::{Envelope, marked, note, warn, write};
+use super::output::{Envelope, Format, marked, note, warn, write};
 pub use arguments::DetectArguments;
-use arguments::{Known, ModelName};
+use arguments::{AnswerFormat, Known, ModelName};
 use palpate::bank::{Bank, BankSearch};
 use palpate::chart::place_figure;
 use palpate::csv::Layout;
@@ -327,7 +327,11 @@ fn tell(
 ) -> Result<(), CliError> {
     let table = format!("{}\n\n{}", with_mark(decision, words), rows.table());
     let answer = Envelope::new("palpate-detection", 4, rows);
-    arguments.format.of_one().print(&answer, || table)?;
+    let format = match arguments.format {
+        AnswerFormat::Json => Format::Json,
+        _ => Format::Table,
+    };
+    format.print(&answer, || table)?;
     if decision.is_none() {
         // A reference sweep can be the one at fault.
         let references = &arguments.model.reference_sweeps;

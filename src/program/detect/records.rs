@@ -55,7 +55,9 @@ pub struct Asked<'a> {
 }
 
 impl<'a> Asked<'a> {
-    /// The passes of all records of these traces, whose notes are printed.
+    /// The passes of all records of these traces, which are different records, and whose notes are printed.
+    ///
+    /// Implements: CLI-239.
     pub fn read_all(&self, traces: &[PathBuf]) -> Result<Vec<Record>, CliError> {
         let passes = traces.iter().map(|path| {
             let (passes, notes) = self.read(path)?;
@@ -63,6 +65,11 @@ impl<'a> Asked<'a> {
             Ok(passes)
         });
         let passes = passes.collect::<Result<Vec<_>, CliError>>()?;
+        for (at, record) in passes.iter().enumerate() {
+            for before in &passes[..at] {
+                check_other(&before[0], &record[0])?;
+            }
+        }
         Ok(passes.into_iter().flatten().collect())
     }
 
@@ -180,11 +187,11 @@ impl<'a> Asked<'a> {
     pub fn detector(&self, sweeps: &[RobustSweep<'_>]) -> Result<Detector<'_>, Refusal> {
         Ok(match &self.between {
             Between::Maps(hypotheses, _) => {
-                Detector::Maps(self.question.detector(*hypotheses, sweeps)?)
+                Detector(self.question.detector(*hypotheses, sweeps)?, None)
             }
             Between::Bank(bank, prior) => {
                 let (detector, of) = self.question.bank_detector(bank, *prior, sweeps)?;
-                Detector::Bank(detector, of)
+                Detector(detector, Some(of))
             }
         })
     }
@@ -204,16 +211,24 @@ impl<'a> Asked<'a> {
     }
 }
 
+/// Refuses a record whose samples are those of another one: it would count as two.
+///
+/// Implements: CLI-239.
+fn check_other(a: &Record, b: &Record) -> Result<(), Refusal> {
+    let is_same =
+        a.positions() == b.positions() && a.depths() == b.depths() && a.forces() == b.forces();
+    let found = format!("the same samples as {}", a.file());
+    let refusal = Refusal::state(found, "name each record once");
+    refusal.in_file(b.file()).when(is_same)
+}
+
 /// Depths as a key.
 fn bits(depths: &[f64]) -> Vec<u64> {
     depths.iter().map(|depth| depth.to_bits()).collect()
 }
 
-/// The detector of the inclusion of a map, or of any of a bank.
-pub enum Detector<'a> {
-    Maps(RobustDetector<'a>),
-    Bank(RobustDetector<'a>, BankHypotheses<'a>),
-}
+/// The detector, and of a bank what tells the place.
+pub struct Detector<'a>(RobustDetector<'a>, Option<BankHypotheses<'a>>);
 
 impl Detector<'_> {
     /// What these sweeps say, and by a bank where the inclusion lies.
@@ -221,17 +236,19 @@ impl Detector<'_> {
         &self,
         sweeps: &[RobustSweep<'_>],
     ) -> Result<(RobustAnswer, Option<RobustPlace>), Refusal> {
-        let (Detector::Maps(detector) | Detector::Bank(detector, _)) = self;
+        let Detector(detector, bank) = self;
+        for reference in sweeps.iter().filter(|sweep| sweep.is_reference) {
+            for sweep in sweeps.iter().filter(|sweep| !sweep.is_reference) {
+                check_other(sweep.record, reference.record)?;
+            }
+        }
         let forces: Vec<_> = sweeps.iter().map(|sweep| sweep.record.forces()).collect();
         let answer = detector.judge(&forces).map_err(|refusal| {
             let mut files: Vec<_> = sweeps.iter().map(|sweep| sweep.record.file()).collect();
             files.dedup();
             refusal.in_file(files.join(", "))
         })?;
-        let place = match self {
-            Detector::Maps(_) => None,
-            Detector::Bank(_, hypotheses) => Some(hypotheses.place(&answer)),
-        };
+        let place = bank.as_ref().map(|bank| bank.place(&answer));
         Ok((answer, place))
     }
 }

@@ -64,7 +64,7 @@ pub fn check_options(arguments: &DetectArguments) -> Result<(), CliError> {
 
 /// Judges sweeps of one place, or each of many records.
 ///
-/// Implements: CLI-040, CLI-043, CLI-239, ROB-030, ROB-033, ROB-040.
+/// Implements: CLI-040, CLI-043, ROB-030, ROB-033, ROB-040.
 pub fn detect(arguments: &DetectArguments, layout: &Layout) -> Result<(), CliError> {
     let known = arguments.noise.undisturbed()?;
     let question = question(arguments, layout, &known)?;
@@ -88,14 +88,6 @@ pub fn detect(arguments: &DetectArguments, layout: &Layout) -> Result<(), CliErr
     let is_one = arguments.model.together || is_alone;
     if !is_one && arguments.hypotheses.figure.is_some() {
         refuse!("--figure draws one place; give one trace, or --together");
-    }
-    let named = |at: &usize| traces[..*at].contains(&traces[*at]);
-    let twice = (0..traces.len()).find(named);
-    if let Some(twice) = twice.filter(|_| arguments.model.together) {
-        refuse!(
-            "{} is named twice; name each record once",
-            traces[twice].display()
-        );
     }
     let sweeps = if is_one { traces.len() } else { 1 };
     let asked = Asked {

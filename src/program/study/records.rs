@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 
 use crate::CliError;
 use crate::error::refuse;
-use crate::output::Envelope;
+use crate::output::{Envelope, files_in};
 use palpate::file::from_json;
 use palpate::journal::take_lines;
 use palpate::refusal::{Refusal, shortened};
@@ -226,21 +226,17 @@ impl Records {
 fn sample_files(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
     let mut all = Vec::new();
     for folder in folders {
-        let before = all.len();
-        for entry in folder.read_dir().map_err(CliError::file("read", folder))? {
-            let path = entry.map_err(CliError::file("read", folder))?.path();
+        let mut files = files_in(folder, |path| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            if name.starts_with("samples-") && name.ends_with(".jsonl") {
-                all.push(path);
-            }
-        }
-        if all.len() == before {
+            name.starts_with("samples-") && name.ends_with(".jsonl")
+        })?;
+        if files.is_empty() {
             refuse!(
                 "{}: the folder has no samples-K-of-N.jsonl; give one written by 'palpate study run'",
                 folder.display()
             );
         }
-        all[before..].sort();
+        all.append(&mut files);
     }
     Ok(all)
 }
