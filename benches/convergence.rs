@@ -83,10 +83,10 @@ impl Shares {
 fn study(name: &str, phantom: &Phantom, laterals: &[f64]) -> Shares {
     let depths = axis(1..=8);
     let default = model(phantom, MESH_SIZE);
-    let map = certified_map(&default, &depths, laterals, &|_| ()).expect("a map");
+    let map = certified_map(&default, &depths, laterals, &|_| true).expect("a map");
     let references = REFERENCES.map(|size| {
         let model = model(phantom, size);
-        let map = model.map(&depths, laterals, &|_| ()).expect("a map");
+        let map = model.map(&depths, laterals, &|_| true).expect("a map");
         (model.mesh().nodes.len(), map)
     });
     let certificate = map.certificate().expect("a certificate");

@@ -157,12 +157,7 @@ fn robust(hypotheses: usize) -> Result<(), Refusal> {
     };
     let signals: Vec<_> = (0..hypotheses).map(signal).collect();
     let question = RobustQuestion::default();
-    let sweep = RobustSweep {
-        record: &record,
-        depth: 4e-3,
-        changes: None,
-        is_reference: false,
-    };
+    let sweep = RobustSweep::new(&record, 4e-3, None);
     let detector = RobustDetector::new(question, &flat, &[sweep], &signals)?;
     let mut best = [f64::INFINITY; 2];
     for _ in 0..15 {

@@ -33,7 +33,7 @@ fn main() {
         for name in BUILTIN_NAMES {
             let phantom = Phantom::builtin(name).expect("a built-in name");
             let model = Model::new(&phantom, MESH_SIZE, Contact::default()).expect("a model");
-            let map = model.map(&depths, &laterals, &|_| ()).expect("a map");
+            let map = model.map(&depths, &laterals, &|_| true).expect("a map");
             line += &format!(
                 "  {name}: {} nodes, {:.5} N",
                 model.mesh().nodes.len(),
@@ -78,7 +78,7 @@ fn stages(name: &str, depths: &[f64], laterals: &[f64]) -> [[Duration; 2]; 2] {
     let build = || Model::new(&phantom, MESH_SIZE, Contact::default()).expect("a model");
     build();
     let (of_model, model) = timed(build);
-    let (of_poses, _) = timed(|| model.map(depths, laterals, &|_| ()).expect("a map"));
+    let (of_poses, _) = timed(|| model.map(depths, laterals, &|_| true).expect("a map"));
     let matrix = StiffnessMatrix::assemble(model.mesh(), &phantom).expect("a matrix");
     let corner = matrix.unknowns() - matrix.first_surface_unknown;
     let poses = laterals
@@ -170,24 +170,10 @@ fn contact_factors(size: usize) {
     }
 }
 
-/// User and system time of this process, s; NaN where there is no /proc.
+/// Processor time of this process, s.
 fn processor_seconds() -> f64 {
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    // Fields are counted behind the program's name, which ends with the last parenthesis.
-    let fields: Vec<&str> = stat
-        .rsplit(')')
-        .next()
-        .unwrap_or_default()
-        .split_whitespace()
-        .collect();
-    let ticks = |index: usize| {
-        fields
-            .get(index)
-            .and_then(|field| field.parse::<f64>().ok())
-            .unwrap_or(f64::NAN)
-    };
-    // Linux counts these in hundredths of a second on every machine.
-    (ticks(11) + ticks(12)) / 100.0
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
 /// The most memory that this process has held, MB; NaN where there is no /proc.

@@ -71,12 +71,7 @@ fn robust() -> (RobustDetector<'static>, Vec<f64>, Vec<f64>) {
     let normal: Vec<f64> = normal.iter().map(|f| f + 1.5).collect();
     let record = Record::new("record", &positions(), Force::new(&lateral, &normal));
     let record = record.expect("a record");
-    let sweep = RobustSweep {
-        record: &record,
-        depth: 4e-3,
-        changes: None,
-        is_reference: false,
-    };
+    let sweep = RobustSweep::new(&record, 4e-3, None);
     let signal = |number: usize| RobustSignal {
         of_sweeps: vec![[bump(0.1, 60.0), bump(0.3, number as f64)].concat()],
         amplitude_sd: AMPLITUDE,

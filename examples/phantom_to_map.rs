@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // A mesh of 1 mm, and the probe 2 and 3 mm deep at nine lateral positions.
     let model = Model::new(&phantom, 1e-3, Contact::default())?;
     let laterals: Vec<f64> = (-4..=4).map(|step| 2e-3 * f64::from(step)).collect();
-    let map = model.map(&[2e-3, 3e-3], &laterals, &|_| ())?;
+    let map = model.map(&[2e-3, 3e-3], &laterals, &|_| true)?;
 
     println!("normal and lateral force (N), 3 mm deep");
     let row = map.table().row(3e-3)?;

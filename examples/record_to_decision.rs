@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let laterals: Vec<f64> = (-16..=16).map(|step| 5e-4 * f64::from(step)).collect();
     let map = |name| -> Result<_, Box<dyn Error>> {
         let model = Model::new(&Phantom::builtin(name)?, 1e-3, Contact::default())?;
-        Ok(model.map(&[4e-3], &laterals, &|_| ())?)
+        Ok(model.map(&[4e-3], &laterals, &|_| true)?)
     };
     let (without, with) = (map("none")?, map("6.6")?);
 

@@ -108,6 +108,8 @@ fn depths_and_diameters_are_those_of_plain_sums() {
             "nothing_unknown_m"
         };
         assert_near(&row[key], width);
+        let is_beyond = key.replace("_m", "_is_beyond_bank");
+        assert_eq!(row[&is_beyond], false);
         assert!(of(shallow_small) > of(deep_small));
     }
     // What is unknown costs γ, by default offset, drift and gain.

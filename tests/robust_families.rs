@@ -160,12 +160,7 @@ fn detectors(bank: &Bank) -> [RobustDetector<'static>; 2] {
     let zeros = vec![0.0; SAMPLES];
     let over = Record::new("over", &positions(), Force::new(&zeros, &zeros)).unwrap();
     let changes = GelChanges::new(bank.reference(), &[DEPTH], &GelUncertainty::default()).unwrap();
-    let sweep = RobustSweep {
-        record: &over,
-        depth: DEPTH,
-        changes: changes.as_ref(),
-        is_reference: false,
-    };
+    let sweep = RobustSweep::new(&over, DEPTH, changes.as_ref());
     let signals = BankHypotheses::new(bank, None).signals(&[sweep]).unwrap();
     let is_disc = |map: &usize| bank.point(*map)[..2] == [0.0, 4.6e-3];
     let map = (0..bank.maps().len()).find(is_disc).unwrap();

@@ -33,7 +33,7 @@
 //! let laterals: Vec<f64> = (-5..=5).map(|k| 2e-3 * f64::from(k)).collect();
 //! let map = |name| -> Result<_, Box<dyn std::error::Error>> {
 //!     let model = Model::new(&Phantom::builtin(name)?, 2e-3, Contact::default())?;
-//!     Ok(model.map(&[2e-3, 4e-3], &laterals, &|_| ())?)
+//!     Ok(model.map(&[2e-3, 4e-3], &laterals, &|_| true)?)
 //! };
 //! let (without, with) = (map("none")?, map("6.6")?);
 //!

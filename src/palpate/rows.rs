@@ -348,12 +348,7 @@ impl Location {
         if bank.axes()[axis].len() == 1 {
             return Ok(None);
         }
-        let [lower, upper] = self.place.ends(axis, CREDIBLE)?;
-        Ok(Some(PlaceInterval {
-            estimate: self.place.estimate[axis],
-            lower,
-            upper,
-        }))
+        Ok(Some(self.place.ends(axis, CREDIBLE)?))
     }
 
     /// The estimate of each parameter that the bank varies.

@@ -99,7 +99,7 @@ fn map(name: &str) -> Result<ForceMap, CliError> {
     let laterals: Vec<f64> = laterals.collect();
     let phantom = Phantom::builtin(name)?;
     let model = Model::new(&phantom, MESH_SIZE, Contact::default());
-    let map = model.and_then(|model| model.map(&DEPTHS, &laterals, &|_| ()));
+    let map = model.and_then(|model| model.map(&DEPTHS, &laterals, &|_| true));
     map.map_err(CliError::fem(name))
 }
 
@@ -154,7 +154,7 @@ fn curve() -> Result<String, CliError> {
     let mut below: Vec<f64> = depths.iter().map(|depth| depth - TOUCHED).collect();
     below.retain(|depth| *depth > 0.0);
     below.dedup();
-    let map = model.map(&below, &[0.0], &|_| ());
+    let map = model.map(&below, &[0.0], &|_| true);
     let map = map.map_err(CliError::fem("none"))?;
     let force = |depth: &f64| {
         let solved = map.table().row(depth - TOUCHED);

@@ -110,6 +110,9 @@ struct SmallestDiameter {
     youngs_modulus_pa: f64,
     nothing_unknown_m: Option<f64>,
     unknown_m: Option<f64>,
+    /// Whether each is the least diameter of the bank, so that a smaller one may be detected too.
+    nothing_unknown_is_beyond_bank: bool,
+    unknown_is_beyond_bank: bool,
 }
 
 impl ReachArguments {
@@ -242,6 +245,8 @@ fn smallest(bank: &Bank, reached: [&[Reached]; 2], needed: f64) -> Vec<SmallestD
                 youngs_modulus_pa,
                 nothing_unknown_m: plain[at],
                 unknown_m: beside[at],
+                nothing_unknown_is_beyond_bank: plain[at].is_some_and(|of| of <= diameters[0]),
+                unknown_is_beyond_bank: beside[at].is_some_and(|of| of <= diameters[0]),
             });
         }
     }

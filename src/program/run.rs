@@ -158,7 +158,10 @@ fn solve_phantom(
     // On three meshes, where they differ enough for bands: a coarse run shall have its report, which says that it has none.
     let meshes = check_meshes(&model).map_or(1, |()| 3);
     bar.inc_length((meshes * depths.len() * model.solved_laterals(laterals).len()) as u64);
-    let solved = |poses| bar.inc(poses as u64);
+    let solved = |poses| {
+        bar.inc(poses as u64);
+        true
+    };
     let map = match meshes {
         3 => certified_map(&model, depths, laterals, &solved)?,
         _ => model.map(depths, laterals, &solved)?,

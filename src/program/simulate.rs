@@ -177,7 +177,7 @@ fn map(name: &str, path: &Path) -> Result<ForceMap, CliError> {
     let [left, right, deepest] = with_margin(&phantom, [-low, high, depth]);
     let (depths, laterals) = (axis(0.0, deepest), axis(-left, right));
     let model = Model::new(&phantom, MESH_SIZE, Contact::default());
-    let map = model.and_then(|model| model.map(&depths, &laterals, &|_| ()));
+    let map = model.and_then(|model| model.map(&depths, &laterals, &|_| true));
     map.map_err(CliError::fem(phantom.name()))
 }
 

@@ -56,27 +56,27 @@ pub fn compare(config: &Config, theories: &[Vec<Phantom>]) -> Result<Vec<Theory>
     theories.iter().map(theory).collect()
 }
 
-fn failed(phantom: &Phantom) -> impl Fn(FemError) -> CliError {
-    CliError::fem(phantom.name())
-}
-
 fn solve(config: &Config, phantoms: &[Phantom]) -> Result<Theory, CliError> {
     let (depths, laterals) = (&config.depths, &config.laterals);
     let size = config.mesh.size_mm / 1e3;
-    let models = phantoms
-        .par_iter()
-        .map(|phantom| Model::new(phantom, size, config.mesh.contact).map_err(failed(phantom)));
+    let failed = |at: usize| CliError::fem(phantoms[at].name());
+    let models = phantoms.par_iter().map(|phantom| {
+        Model::new(phantom, size, config.mesh.contact).map_err(CliError::fem(phantom.name()))
+    });
     let models = models.collect::<Result<Vec<_>, _>>()?;
     let poses = models
         .iter()
         .map(|model| depths.len() * model.solved_laterals(laterals).len());
     let poses: Vec<usize> = poses.collect();
     let most = poses.iter().copied().max().unwrap_or(0);
-    tell_time(&phantoms[0], size, [phantoms.len(), most]).map_err(failed(&phantoms[0]))?;
+    tell_time(&phantoms[0], size, [phantoms.len(), most]).map_err(failed(0))?;
     let bar = bar(poses.iter().sum(), "poses");
     let maps = models.par_iter().map(|model| {
-        let map = model.map(depths, laterals, &|poses| bar.inc(poses as u64));
-        map.map_err(failed(model.phantom()))
+        let map = model.map(depths, laterals, &|poses| {
+            bar.inc(poses as u64);
+            true
+        });
+        map.map_err(CliError::fem(model.phantom().name()))
     });
     let mut maps = maps.collect::<Result<Vec<_>, _>>()?;
     bar.finish_and_clear();
@@ -86,8 +86,8 @@ fn solve(config: &Config, phantoms: &[Phantom]) -> Result<Theory, CliError> {
     Ok(Theory {
         reference: maps.remove(0),
         maps,
-        deformed: deformed.map_err(failed(&phantoms[shown]))?,
-        poisson_leverage: leverage.map_err(failed(&phantoms[0]))?,
+        deformed: deformed.map_err(failed(shown))?,
+        poisson_leverage: leverage.map_err(failed(0))?,
     })
 }
 

@@ -238,12 +238,7 @@ fn whatever_a_record_holds_the_answer_is_one() {
         let over: Vec<f64> = (0..count).map(|k| step * k as f64 - half).collect();
         let zeros = vec![0.0; count];
         let empty = Record::new("any", &over, Force::new(&zeros, &zeros)).unwrap();
-        let at = RobustSweep {
-            record: &empty,
-            depth: DEPTH,
-            changes: changes.as_ref(),
-            is_reference: false,
-        };
+        let at = RobustSweep::new(&empty, DEPTH, changes.as_ref());
         let maps = Hypotheses::of_tables(&own[0], &own[1]).unwrap();
         let of_maps = question.detector(maps, &[at]).unwrap();
         let of_bank = question.bank_detector(&bank, None, &[at]).unwrap();

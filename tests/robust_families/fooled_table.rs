@@ -56,7 +56,7 @@ impl World {
             let model = Model::new(&phantom(disc, |_| ()), 0.65e-3, Contact::default()).unwrap();
             let depths = [LIGHT, DEPTH].map(|depth| [-0.3e-3, 0.0, 0.3e-3].map(|by| depth + by));
             model
-                .map(&depths.concat(), &laterals(0.5e-3), &|_| ())
+                .map(&depths.concat(), &laterals(0.5e-3), &|_| true)
                 .unwrap()
         });
         let changes = [LIGHT, DEPTH]

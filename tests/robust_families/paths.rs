@@ -87,12 +87,7 @@ impl Judge {
     }
 
     fn detector(&self) -> RobustDetector<'static> {
-        let sweep = |record| RobustSweep {
-            record,
-            depth: DEPTH,
-            changes: Some(&self.changes),
-            is_reference: false,
-        };
+        let sweep = |record| RobustSweep::new(record, DEPTH, Some(&self.changes));
         let sweeps: Vec<_> = self.passes.iter().map(sweep).collect();
         let signals = BankHypotheses::new(&self.bank, None)
             .signals(&sweeps)

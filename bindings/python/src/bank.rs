@@ -399,12 +399,7 @@ impl Bank {
             let (passes, left_out) = question.passes(&record, reference);
             let along: Vec<&Record> = passes.iter().collect();
             let changes = self.changes_under(&record, &along)?;
-            let sweep = |record| RobustSweep {
-                record,
-                depth: self.bank.depth(),
-                changes: changes.as_deref(),
-                is_reference: false,
-            };
+            let sweep = |record| RobustSweep::new(record, self.bank.depth(), changes.as_deref());
             let sweeps: Vec<_> = along.into_iter().map(sweep).collect();
             let found = question.locate(&self.bank, prior.as_deref(), &sweeps);
             Ok((found.map_err(refused)?, left_out))

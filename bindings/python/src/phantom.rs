@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use palpate::fem::certify::certified_map_while;
+use palpate::fem::certify::certified_map;
 use palpate::fem::{Contact, FemError, Model, Pose};
 use palpate::force::Force;
 use palpate::phantom;
@@ -338,8 +338,8 @@ impl Phantom {
                 raised.is_none()
             };
             let map = match certify {
-                true => certified_map_while(&model, &depths, &laterals, &solved),
-                false => model.map_while(&depths, &laterals, &solved),
+                true => certified_map(&model, &depths, &laterals, &solved),
+                false => model.map(&depths, &laterals, &solved),
             };
             map.map(ForceMap).map_err(|error| match error {
                 FemError::Stopped => state.into_inner().1.unwrap_or_else(|| refused(error)),

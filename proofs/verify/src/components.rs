@@ -6,6 +6,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::json;
+
 /// The lock file.
 const LOCK: &str = include_str!("../../../Cargo.lock");
 
@@ -41,8 +43,7 @@ pub struct Component {
 /// component that this build's lock file does not hold with the same version and checksum.
 pub fn bill_of_materials(path: &Path) -> Result<Vec<Component>, String> {
     let shown = path.display();
-    let text = std::fs::read_to_string(path).map_err(|error| format!("{shown}: {error}"))?;
-    let bill: Value = serde_json::from_str(&text).map_err(|error| format!("{shown}: {error}"))?;
+    let bill: Value = json(path)?;
     let listed = bill["components"].as_array();
     let listed = listed.filter(|listed| bill["bomFormat"] == "CycloneDX" && !listed.is_empty());
     let listed =

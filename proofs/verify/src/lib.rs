@@ -30,6 +30,10 @@ pub mod system;
 pub mod test_run;
 pub mod timing;
 
+use std::path::Path;
+
+use serde::de::DeserializeOwned;
+
 pub use battery::outcome as battery_outcome;
 pub use check::{Check, Claim, Error, Figure, Measured, Outcome};
 
@@ -59,4 +63,11 @@ pub fn served_requirements() -> impl Iterator<Item = &'static str> {
     let battery = battery::GROUPS.iter().map(|(.., ids)| *ids);
     let all = claims().map(|claim| claim.requirements).chain(battery);
     all.flatten().copied()
+}
+
+/// What a file of JSON holds, or a line that names the file and what is wrong with it.
+fn json<T: DeserializeOwned>(path: &Path) -> Result<T, String> {
+    let text = std::fs::read_to_string(path).map_err(|error| error.to_string());
+    let read = text.and_then(|text| serde_json::from_str(&text).map_err(|error| error.to_string()));
+    read.map_err(|error| format!("{}: {error}", path.display()))
 }

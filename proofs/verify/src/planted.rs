@@ -4,6 +4,8 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
+use super::json;
+
 /// What the run of the ledger wrote, without its list of defects.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Planted {
@@ -45,8 +47,6 @@ impl Planted {
     /// # Errors
     /// A line that names the file and what is wrong with it.
     pub fn read(path: &Path) -> Result<Planted, String> {
-        let shown = path.display();
-        let text = std::fs::read_to_string(path).map_err(|error| format!("{shown}: {error}"))?;
-        serde_json::from_str(&text).map_err(|error| format!("{shown}: {error}"))
+        json(path)
     }
 }

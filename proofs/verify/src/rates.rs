@@ -97,7 +97,7 @@ fn forces(name: &str) -> Measured<Force<Vec<f64>>> {
     let phantom = Phantom::builtin(name)?;
     let laterals: Vec<f64> = (-20..=20).map(|k| f64::from(k) * 0.5e-3).collect();
     let map = Model::new(&phantom, MESH_SIZE, Contact::default())
-        .and_then(|model| model.map(&[DEPTH], &laterals, &|_| ()))
+        .and_then(|model| model.map(&[DEPTH], &laterals, &|_| true))
         .map_err(|error| format!("phantom {name}: {error}"))?;
     let forces = map.table().both().map_err(|error| error.to_string())?;
     Ok(forces.map(|component| component.row(0).to_vec()))

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Claim, Outcome};
+use super::{Claim, Outcome, json};
 
 /// The value of the key `schema`.
 pub const SCHEMA: &str = "palpate-test-run";
@@ -87,11 +87,9 @@ impl TestRun {
     /// # Errors
     /// A line that names the file and what is wrong with it.
     pub fn read(path: &Path) -> Result<TestRun, String> {
-        let shown = path.display();
-        let text = std::fs::read_to_string(path).map_err(|error| format!("{shown}: {error}"))?;
-        let run: TestRun =
-            serde_json::from_str(&text).map_err(|error| format!("{shown}: {error}"))?;
+        let run: TestRun = json(path)?;
         if run.schema != SCHEMA {
+            let shown = path.display();
             return Err(format!(
                 "{shown}: schema is {:?}; it must be {SCHEMA:?}",
                 run.schema

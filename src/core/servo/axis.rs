@@ -33,7 +33,7 @@ pub struct Axis<'a> {
 
 /// Where a position lies: a cell of an axis, and the fraction of its width.
 #[repr(C)]
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cell {
     /// The cell, from 0 to the number of cells minus 1.
     pub index: usize,
@@ -165,10 +165,10 @@ impl<'a> Axis<'a> {
             stride /= 2;
         }
         let Some(&[start, end, ..]) = self.knots.get(index..) else {
-            return Cell::FIRST; // `new` gave every cell two ends
+            return Cell::default(); // `new` gave every cell two ends
         };
         let Some(&reciprocal) = self.reciprocal_widths.get(index) else {
-            return Cell::FIRST; // and a reciprocal
+            return Cell::default(); // and a reciprocal
         };
         let fraction = (position - start) * reciprocal;
         // The product may miss 1 by its last bit on either side.
@@ -179,12 +179,4 @@ impl<'a> Axis<'a> {
         };
         Cell { index, fraction }
     }
-}
-
-impl Cell {
-    /// The start of an axis.
-    const FIRST: Cell = Cell {
-        index: 0,
-        fraction: 0.0,
-    };
 }

@@ -5,6 +5,7 @@ use super::cells::Nodes;
 use super::detector::{BankDetector, BankStatistic};
 use crate::detect::DetectError;
 use crate::force_map::SAME_POSITION;
+use crate::robust::PlaceInterval;
 use crate::stats::Bounds;
 use crate::stats::error::check_probability;
 
@@ -216,20 +217,21 @@ impl PlacePosterior {
         Ok(Bounds { lower, upper })
     }
 
-    /// The ends of the interval to show, which hold the estimate; none where that is an end of the bank, for the likelihood still rises
+    /// The estimate and the ends of the interval to show, which hold it; none where that is an end of the bank, for the likelihood still rises
     /// there. Near it the likeliest place may lie where the tail of [`PlacePosterior::interval`] is.
     ///
     /// # Errors
     /// As [`PlacePosterior::interval`].
     ///
     /// Implements: CLI-153.
-    pub fn ends(&self, axis: usize, level: f64) -> Result<[Option<f64>; 2], DetectError> {
+    pub fn ends(&self, axis: usize, level: f64) -> Result<PlaceInterval, DetectError> {
         let Bounds { lower, upper } = self.interval(axis, level)?;
         let (estimate, points) = (self.estimate[axis], &self.axes[axis].points);
         let is_within = |end: f64| (end - estimate).abs() > SAME_POSITION;
-        Ok([
-            is_within(points[0]).then_some(lower.min(estimate)),
-            is_within(points[points.len() - 1]).then_some(upper.max(estimate)),
-        ])
+        Ok(PlaceInterval {
+            estimate,
+            lower: is_within(points[0]).then_some(lower.min(estimate)),
+            upper: is_within(points[points.len() - 1]).then_some(upper.max(estimate)),
+        })
     }
 }

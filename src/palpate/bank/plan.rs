@@ -190,7 +190,7 @@ impl BankPlan {
         let mut depths = increasing(self.probe_depths.iter().flat_map(around));
         depths.dedup_by(|next, depth| *next - *depth <= SAME_POSITION);
         let model = Model::new(&phantom, self.mesh_size, self.contact)?;
-        model.map(&depths, &self.laterals, &|_| ())
+        model.map(&depths, &self.laterals, &|_| true)
     }
 
     /// The map of one hypothesis, and that of its mirror image. `last` is the model of the one before, whose mesh serves again

@@ -135,12 +135,7 @@ impl Reach<'_> {
         changes: Option<&GelChanges>,
     ) -> Result<Vec<Vec<BesideClass>>, Refusal> {
         let passes = self.passes();
-        let sweep = |record| RobustSweep {
-            record,
-            depth: self.bank.depth(),
-            changes,
-            is_reference: false,
-        };
+        let sweep = |record| RobustSweep::new(record, self.bank.depth(), changes);
         let sweeps: Vec<_> = passes.iter().map(sweep).collect();
         // The first are those of the maps, by their number: without a prior each of them is possible.
         let signals = BankHypotheses::new(self.bank, None).signals(&sweeps)?;

@@ -11,6 +11,7 @@ use crate::detect::DetectError;
 use crate::phantom::{Inclusion, Shape};
 use crate::refusal::Refusal;
 use crate::robust::PlaceInterval;
+use crate::rows::CREDIBLE;
 use crate::text::{extremes, trimmed};
 
 /// The colours of the credible regions with their levels, the later over the earlier.
@@ -18,8 +19,6 @@ const REGIONS: [(f64, RGBColor); 2] = [
     (0.95, RGBColor(168, 207, 236)),
     (0.5, RGBColor(46, 143, 200)),
 ];
-/// The level of the intervals.
-const LEVEL: f64 = 0.95;
 /// Spans nearer than this touch, in the units of a bank and of its figure: rounding alone is between them.
 const TOUCHING: f64 = 1e-12;
 
@@ -104,15 +103,10 @@ fn marginal(
         .zip(&sums)
         .map(|([from, to], (_, mass))| ([from, to], mass / (of_unit * (to - from))));
     let bars: Vec<_> = bars.collect();
-    let [lower, upper] = place.ends(axis, LEVEL)?;
-    let interval = PlaceInterval {
-        estimate: place.estimate[axis],
-        lower,
-        upper,
-    };
+    let interval = place.ends(axis, CREDIBLE)?;
     let range = interval.in_words(|x| trimmed(scale * x, 3));
     let (first, last) = (points[0], points[points.len() - 1]);
-    let [low, high] = [lower, upper].map(|end| end.map(|x| scale * x));
+    let [low, high] = [interval.lower, interval.upper].map(|end| end.map(|x| scale * x));
     let from = if low.and(high).is_some() { "from " } else { "" };
     let (low, high) = (low.unwrap_or(first), high.unwrap_or(last));
     let estimate = scale * interval.estimate;
@@ -122,35 +116,44 @@ fn marginal(
         (low.min(estimate) - aside).max(first),
         (high.max(estimate) + aside).min(last),
     ];
-    let values = [low, high, estimate];
-    let estimate = trimmed(estimate, 3);
-    let names = [format!("95 %: {range}"), format!("likeliest: {estimate}")];
     let panel = Panel {
-        x_name: format!("{name} ({unit})"),
         heading: format!("Probability density (1/{per})"),
-        ..posterior(&bars, x, values, names)
+        ..posterior(axis, &bars, x, interval, "likeliest")
     };
+    let estimate = trimmed(estimate, 3);
     let words = format!("{name}: {estimate} {unit}, with 95 % probability {from}{range} {unit}");
     Ok((panel, words))
 }
 
-/// Bars, each from end to end with its height, between two places: those of an interval filled, and an estimate; both with their names.
+/// Bars of one parameter, each from end to end with its height, between two places: those of the interval filled, and its estimate, which
+/// is what `estimated` calls it.
 pub fn posterior(
+    axis: usize,
     bars: &[([f64; 2], f64)],
     x: [f64; 2],
-    [low, high, estimate]: [f64; 3],
-    [interval, estimated]: [String; 2],
+    interval: PlaceInterval,
+    estimated: &str,
 ) -> Panel {
+    let (name, unit, scale) = words(Parameter::ALL[axis]);
+    let [low, high] = [interval.lower, interval.upper].map(|end| end.map(|x| scale * x));
+    let (low, high) = (low.unwrap_or(x[0]), high.unwrap_or(x[1]));
+    let (estimate, range) = (
+        scale * interval.estimate,
+        interval.in_words(|x| trimmed(scale * x, 3)),
+    );
     let shown = outline(bars, x);
     let y = round_range(shown.iter().map(|point| point.1));
     let area = Line::area(REGIONS[0].1, outline(bars, [low, high]));
     let line = Line::new(VERMILION, vec![(estimate, 0.0), (estimate, y[1])]).dashed(true);
     let lines = vec![
-        area.named(interval),
+        area.named(format!("95 %: {range}")),
         Line::new(INK, shown),
-        line.named(estimated),
+        line.named(format!("{estimated}: {}", trimmed(estimate, 3))),
     ];
-    Panel::new("", [x, y], 150, lines)
+    Panel {
+        x_name: format!("{name} ({unit})"),
+        ..Panel::new("", [x, y], 150, lines)
+    }
 }
 
 /// The outline of bars, each from end to end with its height, between two places: 0 where there is none.

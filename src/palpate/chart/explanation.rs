@@ -217,7 +217,7 @@ pub(super) fn residual_panel(heading: String, x: [f64; 2], noise_sd: f64) -> Pan
 /// The probability of each value of a parameter that the bank varies, as a bar.
 fn marginal(bank: &Bank, place: &RobustPlace, axis: usize) -> Option<Panel> {
     let interval = place.intervals[axis]?;
-    let (name, unit, scale) = words(Parameter::ALL[axis]);
+    let (_, _, scale) = words(Parameter::ALL[axis]);
     let values: Vec<f64> = bank.axes()[axis].iter().map(|x| scale * x).collect();
     let (count, half) = (values.len(), |a: f64, b: f64| 0.5 * (a + b));
     let ends = (0..=count).map(|at| match at {
@@ -229,17 +229,8 @@ fn marginal(bank: &Bank, place: &RobustPlace, axis: usize) -> Option<Panel> {
     let cells = ends.windows(2).map(|pair| [pair[0], pair[1]]);
     let bars: Vec<_> = cells.zip(place.marginals[axis].iter().copied()).collect();
     let x = [ends[0], ends[count]];
-    let [low, high] = [interval.lower, interval.upper].map(|end| end.map(|end| scale * end));
-    let estimate = scale * interval.estimate;
-    let range = interval.in_words(|x| trimmed(scale * x, 3));
-    let names = [
-        format!("95 %: {range}"),
-        format!("mean: {}", trimmed(estimate, 3)),
-    ];
-    let shown = [low.unwrap_or(x[0]), high.unwrap_or(x[1]), estimate];
     Some(Panel {
-        x_name: format!("{name} ({unit})"),
         heading: "Probability, if there is one".into(),
-        ..posterior(&bars, x, shown, names)
+        ..posterior(axis, &bars, x, interval, "mean")
     })
 }

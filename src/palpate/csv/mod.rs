@@ -22,6 +22,8 @@ pub struct Rows<const N: usize> {
     pub rows: Vec<(usize, [f64; N])>,
     /// What a person should know of how the table was read.
     pub notes: Vec<String>,
+    /// Rows that were left out because they lack a number.
+    pub(crate) missing: usize,
     /// Whether the line below the header gives the units.
     pub(crate) has_units: bool,
     /// The decimal mark of its numbers, if it is known.
@@ -55,32 +57,14 @@ impl<const N: usize> Rows<N> {
         layout: &Layout,
         are_samples: bool,
     ) -> Result<(Self, [bool; N]), Refusal> {
-        let must = std::array::from_fn(|at| (at < required).then_some(columns[at]));
-        let lines = lines(text, layout);
-        let header = Header::<N>::find(&lines, must, layout);
-        let fields = header.map_or(Vec::new(), |header| header.fields);
-        let is_there = |column| layout.states(column) || fields.iter().any(|of| names(of, column));
-        let is_there = std::array::from_fn(|at| at < required || is_there(columns[at]));
-        let there = std::array::from_fn(|at| is_there[at].then_some(columns[at]));
         layout.check(&columns)?;
-        let rows = Rows::read(&lines, there, expected, layout, are_samples)?;
-        Ok((rows, is_there))
-    }
-
-    /// The table; 0 in place of a column that is none.
-    fn read(
-        lines: &[(usize, &str)],
-        columns: [Option<Column>; N],
-        expected: &str,
-        layout: &Layout,
-        are_samples: bool,
-    ) -> Result<Self, Refusal> {
-        let header = Header::find(lines, columns, layout);
+        let lines = lines(text, layout);
+        let header = Header::find(&lines, (columns, required), layout);
         let header = header.map_err(|(found, (line, header))| {
             let found = format!("{found} in the header {:?}", shortened(header.trim()));
             Refusal::state(found, format!("give {expected}")).at(line)
         })?;
-        let mut notes = header.notes(lines);
+        let mut notes = header.notes(&lines);
         let rows = &lines[header.below..];
         let footer = header.footer(rows);
         if footer > 0 {
@@ -111,16 +95,18 @@ impl<const N: usize> Rows<N> {
             }
             None => {}
         }
-        Ok(Rows {
+        let table = Rows {
             line: lines[header.at].0,
             names: header
                 .found
                 .map(|found| found.map_or("", |found| found.name)),
             rows,
             notes,
+            missing: missing.len(),
             has_units: header.has_units(),
             mark,
-        })
+        };
+        Ok((table, header.found.map(|found| found.is_some())))
     }
 }
 
@@ -157,7 +143,7 @@ impl<'a, const N: usize> Header<'a, N> {
     /// Implements: MAP-047.
     fn find(
         lines: &[(usize, &'a str)],
-        columns: [Option<Column>; N],
+        columns: ([Column; N], usize),
         layout: &Layout,
     ) -> Result<Header<'a, N>, (String, (usize, &'a str))> {
         let mut named = None;
@@ -194,7 +180,7 @@ impl<'a, const N: usize> Header<'a, N> {
     fn of(
         lines: &[(usize, &'a str)],
         at: usize,
-        columns: [Option<Column>; N],
+        (columns, required): ([Column; N], usize),
         layout: &Layout,
     ) -> Result<Header<'a, N>, String> {
         let line = lines[at].1;
@@ -203,15 +189,18 @@ impl<'a, const N: usize> Header<'a, N> {
         let separator = separators.max_by_key(|&separator| split(line, separator).count());
         let separator = separator.unwrap_or(',');
         let fields: Vec<&str> = split(line, separator).collect();
-        let found = columns.map(|column| column.map(|of| find(&fields, of, layout)).transpose());
-        let found: Vec<Option<Found>> = found.into_iter().collect::<Result<_, _>>()?;
+        let is_there = |column| layout.states(column) || fields.iter().any(|of| names(of, column));
+        let mut found = [None; N];
+        for (at, (found, column)) in found.iter_mut().zip(columns).enumerate() {
+            if at < required || is_there(column) {
+                *found = Some(find(&fields, column, layout)?);
+            }
+        }
         let mut places: Vec<usize> = found.iter().flatten().map(|of| of.place).collect();
         places.sort_unstable();
         if let Some(twice) = places.windows(2).find(|pair| pair[0] == pair[1]) {
             return Err(format!("column {} for two quantities", twice[0] + 1));
         }
-        // There are as many as columns.
-        let found = std::array::from_fn(|at| found[at]);
         let units = lines.get(at + 1).and_then(|(_, row)| {
             let units: Vec<&str> = split(row, separator).collect();
             in_units(found, columns, &units)
@@ -344,12 +333,12 @@ impl<'a, const N: usize> Header<'a, N> {
 /// The columns in the units of a row, if it is one of units.
 fn in_units<const N: usize>(
     mut found: [Option<Found>; N],
-    columns: [Option<Column>; N],
+    columns: [Column; N],
     units: &[&str],
 ) -> Option<[Option<Found>; N]> {
     let mut has_unit = false;
-    let pairs = found.iter_mut().flatten();
-    for (found, column) in pairs.zip(columns.into_iter().flatten()) {
+    for (found, column) in found.iter_mut().zip(columns) {
+        let Some(found) = found else { continue };
         let unit = *units.get(found.place)?;
         if unit.is_empty() && found.by != By::Unitless {
             continue;

@@ -26,31 +26,13 @@ const SAFETY: f64 = 1.25;
 const SAFETY_UNTRUSTED: f64 = 3.0;
 
 /// The force map of [`Model::map`] with the discretisation's band around each force. `solved` is told of each pose
-/// of all three meshes.
+/// of all three meshes, and says whether to go on.
 ///
-/// Implements: FEM-026, FEM-028, FEM-086.
+/// Implements: FEM-026, FEM-028, FEM-086, PYT-010, PYT-056.
 ///
 /// # Errors
 /// As [`check_meshes`], [`Model::new`] and [`Model::map`].
 pub fn certified_map(
-    model: &Model,
-    depths: &[f64],
-    laterals: &[f64],
-    solved: &dyn Fn(usize),
-) -> Result<ForceMap, FemError> {
-    certified_map_while(model, depths, laterals, &|poses| {
-        solved(poses);
-        true
-    })
-}
-
-/// [`certified_map`], where `solved` says whether to go on.
-///
-/// # Errors
-/// As [`certified_map`]; [`FemError::Stopped`].
-///
-/// Implements: PYT-010, PYT-056.
-pub fn certified_map_while(
     model: &Model,
     depths: &[f64],
     laterals: &[f64],
@@ -70,7 +52,7 @@ pub fn certified_map_while(
     // The coarsest first: what it refuses shall not cost the time of the others.
     let (coarse_nodes, coarse) = coarser(coarse)?;
     let (middle_nodes, middle) = coarser(middle)?;
-    let finest = model.map_while(depths, laterals, solved)?;
+    let finest = model.map(depths, laterals, solved)?;
     let (fine, middle) = (finest.table().both()?, middle.both()?);
     let bands = fine.zip(middle).zip(coarse.both()?);
     let bands = bands.map(|((fine, middle), coarse)| {

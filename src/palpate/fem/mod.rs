@@ -96,7 +96,7 @@ pub enum FemError {
     },
     /// Memory ran out.
     OutOfMemory,
-    /// The caller of [`Model::map_while`] did not want the rest.
+    /// The caller of [`Model::map`] did not want the rest.
     Stopped,
 }
 

@@ -383,31 +383,13 @@ impl Model {
 
     /// The force map over `depths` × `laterals` (m, both increasing) with its certificate. Negative lateral
     /// positions are the mirror images of positive ones. `solved` is told after each lateral position how
-    /// many poses that were.
+    /// many poses that were, and says whether to go on.
     ///
-    /// Implements: FEM-014, FEM-013, FEM-038, FEM-060.
+    /// Implements: FEM-014, FEM-013, FEM-038, FEM-060, PYT-010.
     ///
     /// # Errors
-    /// As [`Model::solve`], and [`FemError::Residual`], [`FemError::Refused`].
+    /// As [`Model::solve`], and [`FemError::Residual`], [`FemError::Refused`], [`FemError::Stopped`].
     pub fn map(
-        &self,
-        depths: &[f64],
-        laterals: &[f64],
-        solved: &dyn Fn(usize),
-    ) -> Result<ForceMap, FemError> {
-        self.map_while(depths, laterals, &|poses| {
-            solved(poses);
-            true
-        })
-    }
-
-    /// [`Model::map`], where `solved` says whether to go on.
-    ///
-    /// # Errors
-    /// As [`Model::map`]; [`FemError::Stopped`].
-    ///
-    /// Implements: PYT-010.
-    pub fn map_while(
         &self,
         depths: &[f64],
         laterals: &[f64],
@@ -436,10 +418,10 @@ impl Model {
         Ok((right, solutions))
     }
 
-    /// The forces of [`Model::map_while`] alone; of the fields only those at the deepest poses are checked.
+    /// The forces of [`Model::map`] alone; of the fields only those at the deepest poses are checked.
     ///
     /// # Errors
-    /// As [`Model::map_while`].
+    /// As [`Model::map`].
     ///
     /// Implements: FEM-026.
     pub(super) fn table(
@@ -481,7 +463,7 @@ impl Model {
     /// Implements: FEM-040.
     pub fn sweep(&self, depths: &[f64], laterals: &[f64]) -> Result<ForceMap, FemError> {
         let &[depth] = depths else {
-            return self.map(depths, laterals, &|_| ());
+            return self.map(depths, laterals, &|_| true);
         };
         self.check_poses(&[depth], laterals)?;
         let right = self.solved_laterals(laterals);

@@ -38,6 +38,9 @@ const SHARPEST_CORNER: f64 = 30.0;
 /// diameter, so that a distance comes out too long by at most 0.4 µm for 10 mm.
 const CHORDS: usize = 256;
 
+/// Why a place must be 0.
+pub(super) const AXIS: &str = " (the axis of an axisymmetric phantom)";
+
 type Check = Result<(), Refusal>;
 
 impl Phantom {
@@ -89,16 +92,8 @@ impl Phantom {
         let why = " (the diameter of the sphere that the probe of an axisymmetric phantom is)";
         within("probe.length_mm", mm(length), diameter..=diameter, why)?;
         for (at, inclusion) in self.0.inclusions.iter().enumerate() {
-            let (key, place) = (
-                format!("inclusion[{at}].centre_x_mm"),
-                mm(inclusion.centre_x),
-            );
-            within(
-                &key,
-                place,
-                0.0..=0.0,
-                " (the axis of an axisymmetric phantom)",
-            )?;
+            let key = format!("inclusion[{at}].centre_x_mm");
+            within(&key, mm(inclusion.centre_x), 0.0..=0.0, AXIS)?;
         }
         let found = "\"axisymmetric\"";
         let expected = "\"plane\" where the phantom is not its own mirror image: give inclusions that are, fibres along x or y, and no friction";
@@ -135,12 +130,8 @@ impl Phantom {
         let why = format!(
             " (0.1 mm of layer[{layer}] must lie above and below the inclusion, {high} high)"
         );
-        within(
-            &format!("{key}.depth_mm"),
-            mm(inclusion.depth),
-            depths,
-            &why,
-        )?;
+        let depth_key = format!("{key}.depth_mm");
+        within(&depth_key, mm(inclusion.depth), depths, &why)?;
         let (x, most) = (inclusion.centre_x, self.0.well.width / 2.0 - CLEARANCE);
         let places = to_picometre(x - left - most)..=to_picometre(most - (right - x));
         if places.is_empty() {
@@ -215,35 +206,22 @@ fn check_name(key: &str, name: &str) -> Check {
 }
 
 fn check_material(table: &str, material: &Material, strain: Strain) -> Check {
+    let key = |end: &str| format!("{table}.{end}");
     let modulus = kpa(material.youngs_modulus);
     let moduli = (Excluded(0.0), Unbounded);
-    within(&format!("{table}.youngs_modulus_kpa"), modulus, moduli, "")?;
+    within(&key("youngs_modulus_kpa"), modulus, moduli, "")?;
     let (least, largest) = match strain {
         Strain::Small => (-1.0, LARGEST_POISSON_RATIO),
         Strain::Finite => (0.0, LARGEST_WITH_PRESSURES),
     };
     let ratios = (Excluded(least), Included(largest));
     let ratio = plain(material.poisson_ratio);
-    within(&format!("{table}.poisson_ratio"), ratio, ratios, "")?;
-    at_finite_strain(
-        &format!("{table}.yeoh_c20_kpa"),
-        kpa(material.yeoh_c20),
-        strain,
-        LARGEST_MODULUS,
-    )?;
+    within(&key("poisson_ratio"), ratio, ratios, "")?;
+    let c20 = kpa(material.yeoh_c20);
+    at_finite_strain(&key("yeoh_c20_kpa"), c20, strain, LARGEST_MODULUS)?;
     let (fibres, angle) = (kpa(material.fibre_modulus), plain(material.fibre_angle_deg));
-    within(
-        &format!("{table}.fibre_modulus_kpa"),
-        fibres,
-        0.0..=LARGEST_MODULUS,
-        "",
-    )?;
-    within(
-        &format!("{table}.fibre_angle_deg"),
-        angle,
-        -360.0..=360.0,
-        "",
-    )
+    within(&key("fibre_modulus_kpa"), fibres, 0.0..=LARGEST_MODULUS, "")?;
+    within(&key("fibre_angle_deg"), angle, -360.0..=360.0, "")
 }
 
 /// Refuses a number that is not between 0 and `largest`, or not 0 at small strain, where it would change nothing.

@@ -2,7 +2,7 @@
 
 use std::ops::Bound::Excluded;
 
-use super::limits::{in_mm, within};
+use super::limits::{AXIS, in_mm, within};
 use super::{Geometry, Phantom, Probe};
 use crate::decimal::mm;
 use crate::refusal::Refusal;
@@ -30,8 +30,7 @@ impl Phantom {
         let why = " (the height of the layers)";
         within("depth_mm", mm(depth), 0.0..self.height(), why)?;
         if self.0.geometry == Geometry::Axisymmetric {
-            let why = " (the axis of an axisymmetric phantom)";
-            within("lateral_mm", mm(lateral), 0.0..=0.0, why)?;
+            within("lateral_mm", mm(lateral), 0.0..=0.0, AXIS)?;
         }
         let half_width = self.0.probe.half_width_at(depth);
         let limit = self.0.well.width / 2.0 - half_width;

@@ -38,13 +38,13 @@ pub enum Part {
     Relaxation,
     /// A random walk of the sensor.
     Walk,
-    /// Waves of the surface, with wavenumbers in a band of [`WAVES`].
+    /// Waves of the surface, with wavenumbers in a band of `WAVES`.
     #[serde(skip)]
     Waves(usize),
     /// A bump of the surface after so many tenths of the place, 1 to 9.
     #[serde(skip)]
     Bump(usize),
-    /// Sways of the sensor, with wavenumbers in a band of [`SWAYS`].
+    /// Sways of the sensor, with wavenumbers in a band of `SWAYS`.
     #[serde(skip)]
     Sway(usize),
 }

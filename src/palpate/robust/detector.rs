@@ -6,7 +6,7 @@ use std::ops::AddAssign;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::classes::{CLASSES, Class, Covariance, Disturbances, Part, SUPPORT_ALONE, SharedBy};
-use super::evidence::{Evidence, Signal, WeightedClass, evidence};
+use super::evidence::{Evidence, Factors, Signal, WeightedClass, evidence};
 use super::sweep::{Cleaned, PreparedSweep, prepared};
 use super::{RobustAnswer, RobustQuestion, RobustSignal, RobustSweep, channels};
 use crate::detect::{Decision, DetectError, ErrorRates, error_rates, map_threshold, posterior};
@@ -70,6 +70,7 @@ impl<'a> RobustDetector<'a> {
             let extent = extents.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
             prepared(&question, without, sweep, extent)
         };
+        let file = sweeps.first().map_or("", |sweep| sweep.record.file());
         let prepared = sweeps.iter().zip(&places).map(prepare);
         let sweeps = prepared.collect::<Result<Vec<_>, _>>()?;
         let disturbances: Vec<_> = (sweeps.iter())
@@ -94,7 +95,7 @@ impl<'a> RobustDetector<'a> {
             (weighted, signals, shape) = of_rows(&counted, &weighted, &signals, &shape);
         }
         if signals.iter().all(|signal| signal.mean.amax() == 0.0) {
-            return Err(refused(DetectError::NoSignal));
+            return Err(refused(DetectError::NoSignal).in_file(file));
         }
         drop(disturbances);
         Ok(RobustDetector {
@@ -111,7 +112,7 @@ impl<'a> RobustDetector<'a> {
 
     /// Judges the forces of one record for each sweep.
     ///
-    /// Implements: ROB-003, ROB-004, ROB-031, ROB-060.
+    /// Implements: ROB-003, ROB-004, ROB-009, ROB-031, ROB-060.
     ///
     /// # Errors
     /// A record with lateral forces where the sweep has none, or the other way round; a force beyond 10²⁰ N, or that is not finite.
@@ -133,19 +134,25 @@ impl<'a> RobustDetector<'a> {
             return Ok(answer);
         }
         let [record, noise] = self.reduced(&cleaned, level);
-        let turned: Vec<Cleaned> = cleaned.iter().map(Cleaned::turned).collect();
-        let [turned, _] = self.reduced(&turned, level);
-        let (classes, signals) = (&self.weighted, &self.signals);
-        let found = evidence([&record, &turned], &noise, classes, signals, &self.shape);
-        let Some(([found, turned], factors)) = found else {
+        let has_lateral = self.sweeps.iter().any(|sweep| sweep.has_lateral);
+        let alone = match has_lateral {
+            true => self.posterior_of_normal([&record, &noise])?,
+            false => None,
+        };
+        let favours_one = alone.is_some_and(|[theta, _]| theta >= 0.0);
+        let turned = (has_lateral && !favours_one).then(|| {
+            let turned: Vec<Cleaned> = cleaned.iter().map(Cleaned::turned).collect();
+            let [turned, _] = self.reduced(&turned, level);
+            turned
+        });
+        let found = self.evidence(&record, turned.as_ref(), &noise);
+        let Some((found, is_likelier_turned, factors)) = found else {
             answer.causes.push(Cause::Misfit);
             return Ok(answer);
         };
         self.conclude(&found, &factors, &mut answer)?;
-        if self.sweeps.iter().any(|sweep| sweep.has_lateral) {
-            let alone = self.posterior_of_normal([&record, &noise])?;
-            answer.is_none_doubtful = alone.is_some_and(|[theta, _]| theta >= 0.0)
-                || turned.total() > found.total() + MUCH_LIKELIER;
+        if has_lateral {
+            answer.is_none_doubtful = favours_one || is_likelier_turned;
             let is_contradicted = match answer.decision {
                 Some(Decision::Inclusion) => {
                     alone.is_some_and(|[_, posterior]| posterior <= 1.0 - self.question.sure)
@@ -249,6 +256,26 @@ impl<'a> RobustDetector<'a> {
             .zip(levels)
             .filter(|(weight, _)| *weight >= HEAVY * heaviest);
         heavy.find_map(|(_, level)| wrong_level(*level))
+    }
+
+    /// The evidence of the record, and whether it would be much likelier as the record `turned`, with the other sign of its lateral forces.
+    ///
+    /// Implements: ROB-009.
+    fn evidence(
+        &self,
+        record: &DVector<f64>,
+        turned: Option<&DVector<f64>>,
+        noise: &DVector<f64>,
+    ) -> Option<(Evidence, bool, Factors)> {
+        let (classes, signals, shape) = (&self.weighted, &self.signals, &self.shape);
+        let Some(turned) = turned else {
+            let ([found], factors) = evidence([record], noise, classes, signals, shape)?;
+            return Some((found, false, factors));
+        };
+        let found = evidence([record, turned], noise, classes, signals, shape);
+        let ([found, turned], factors) = found?;
+        let is_likelier = turned.total() > found.total() + MUCH_LIKELIER;
+        Some((found, is_likelier, factors))
     }
 
     /// The amplitudes of the records that count, and the variances of their noise.

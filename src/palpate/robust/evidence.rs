@@ -31,6 +31,9 @@ pub struct WeightedClass {
     pub covariance: DMatrix<f64>,
 }
 
+/// The covariance of each class beside the noise, factorised.
+pub type Factors = Vec<Cholesky<f64, Dyn>>;
+
 /// What a record says of each class under either hypothesis.
 #[derive(Debug, Clone)]
 pub struct Evidence {
@@ -117,8 +120,7 @@ fn whitened(cholesky: &Cholesky<f64, Dyn>, of: &DVector<f64>) -> DVector<f64> {
 }
 
 /// The evidence of each of `records` with the same noise, by classes of the weights and covariances, beside `signals` with a `shape` of
-/// uncertainty; all in modes. Beside it the covariance of each class and the noise, factorised. None if a covariance is not positive
-/// definite.
+/// uncertainty; all in modes. None if a covariance is not positive definite.
 ///
 /// Implements: ROB-031, ROB-032.
 pub fn evidence<const N: usize>(
@@ -127,7 +129,7 @@ pub fn evidence<const N: usize>(
     classes: &[WeightedClass],
     signals: &[Signal],
     shape: &DMatrix<f64>,
-) -> Option<([Evidence; N], Vec<Cholesky<f64, Dyn>>)> {
+) -> Option<([Evidence; N], Factors)> {
     let whole: f64 = classes.iter().map(|class| class.weight).sum();
     let (sizes, nearest) = sizes(signals);
     let mut all = records.map(|_| Evidence::new(signals.len()));

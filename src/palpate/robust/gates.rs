@@ -22,14 +22,8 @@ pub fn is_saturated(channel: &[f64]) -> bool {
     let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
         return false;
     };
-    let inner = runs
-        .iter()
-        .skip(1)
-        .rev()
-        .skip(1)
-        .copied()
-        .max()
-        .unwrap_or(0);
+    let inner = runs.get(1..runs.len() - 1).unwrap_or_default();
+    let inner = inner.iter().copied().max().unwrap_or(0);
     let at = |share: f64| sorted[(share * (samples - 1.0)) as usize];
     // A coarse converter has many samples of each value.
     let coarse = 4.0 * samples * step(channel) / (at(0.975) - at(0.025)).max(f64::MIN_POSITIVE);

@@ -82,6 +82,18 @@ pub struct RobustSweep<'a> {
     pub is_reference: bool,
 }
 
+impl<'a> RobustSweep<'a> {
+    /// A sweep of the place in question.
+    pub fn new(record: &'a Record, depth: f64, changes: Option<&'a GelChanges>) -> RobustSweep<'a> {
+        RobustSweep {
+            record,
+            depth,
+            changes,
+            is_reference: false,
+        }
+    }
+}
+
 /// Nothing is known, an inclusion is as probable as none, and an answer is sure from 0.95 on.
 impl Default for RobustQuestion<'_> {
     fn default() -> Self {

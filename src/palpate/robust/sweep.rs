@@ -10,7 +10,7 @@ use super::{RobustQuestion, RobustSweep, channels, expected};
 use crate::force::Force;
 use crate::force_map::{ForceMap, ForceTable};
 use crate::refusal::Refusal;
-use crate::trace::contact::{RADIUS, in_air, is_narrow, level, radius};
+use crate::trace::contact::{RADIUS, in_air, is_narrow, level, radius, wrong_level};
 use crate::trace::design::{difference, slope};
 use crate::trace::{Cause, LEAST_SAMPLES, Record};
 
@@ -110,16 +110,12 @@ pub fn prepared(
     let record = sweep.record;
     let samples = record.positions().len();
     let least = question.least_samples();
-    let few = Refusal::state(
-        format!("{samples} samples"),
-        format!("give at least {least}"),
-    );
-    few.in_file(record.file()).when(samples < least)?;
-    let many = Refusal::state(
-        format!("{samples} samples"),
-        format!("give at most {MOST_SAMPLES}, such as means of neighbours"),
-    );
-    many.in_file(record.file()).when(samples > MOST_SAMPLES)?;
+    let remedy = match samples < least {
+        true => format!("give at least {least}"),
+        false => format!("give at most {MOST_SAMPLES}, such as means of neighbours"),
+    };
+    let wrong = Refusal::state(format_args!("{samples} samples"), remedy).in_file(record.file());
+    wrong.when(!(least..=MOST_SAMPLES).contains(&samples))?;
     let undisturbed = undisturbed(question, without, sweep, extent)?;
     let is_stated = question.noise_sd.is_some();
     let modes = Modes::new(record.positions(), undisturbed.radius, is_stated);
@@ -321,7 +317,9 @@ impl PreparedSweep {
         let glitches = lateral.1 + normal.1;
         let forces = Force::new(lateral.0, normal.0);
         if self.has_lateral && self.is_quiet(&forces) {
-            return Err(Cause::Channels);
+            let level = wrong_level(self.level(question, &forces.normal));
+            let unit = level.filter(|&of| of == Cause::ForceUnit);
+            return Err(unit.unwrap_or(Cause::Channels));
         }
         let even = |power: f64| Spectrum::even(modes, power, power / question.correlation_length);
         let noise = match stated {

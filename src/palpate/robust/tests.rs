@@ -503,12 +503,7 @@ fn at_place<'a>(
     record: &'a Record,
     changes: Option<&'a GelChanges>,
 ) -> RobustSweep<'a> {
-    RobustSweep {
-        record,
-        depth: bank.depth(),
-        changes,
-        is_reference: false,
-    }
+    RobustSweep::new(record, bank.depth(), changes)
 }
 
 fn bank() -> Bank {
@@ -744,12 +739,9 @@ fn explained(forces: &dyn Fn(f64) -> [f64; 2]) -> (RobustAnswer, Vec<Force<Vec<f
         amplitude_sd: 0.4,
         prior: 1.0,
     };
-    let sweeps = records.iter().map(|record| RobustSweep {
-        record,
-        depth: 4e-3,
-        changes: None,
-        is_reference: false,
-    });
+    let sweeps = records
+        .iter()
+        .map(|record| RobustSweep::new(record, 4e-3, None));
     let sweeps: Vec<_> = sweeps.collect();
     let detector =
         RobustDetector::new(RobustQuestion::default(), &flat, &sweeps, &[signal]).unwrap();
@@ -858,7 +850,9 @@ fn a_reference_sweep_tells_of_the_gel_and_a_light_one_of_the_surface() {
     let laterals: Vec<f64> = (-16..=16).map(|x| f64::from(x) * 0.5e-3).collect();
     let map = |name| {
         let model = Model::new(&phantom(name), 1e-3, Contact::default()).unwrap();
-        model.map(&[1e-3, 2e-3, 4e-3], &laterals, &|_| ()).unwrap()
+        model
+            .map(&[1e-3, 2e-3, 4e-3], &laterals, &|_| true)
+            .unwrap()
     };
     let (none, disc) = (map("none"), map("4.6"));
     let depths = [1e-3, 4e-3];
@@ -1107,12 +1101,7 @@ fn passes_whose_depth_trembles_are_judged_by_what_the_maps_say_of_it() {
         let changes = GelChanges::new(bank.reference(), &depths, &GelUncertainty::default());
         let changes = changes.unwrap();
         let sweeps: Vec<_> = (passes.iter().zip([2.6e-3, 3.8e-3]))
-            .map(|(record, depth)| RobustSweep {
-                record,
-                depth,
-                changes: changes.as_ref(),
-                is_reference: false,
-            })
+            .map(|(record, depth)| RobustSweep::new(record, depth, changes.as_ref()))
             .collect();
         question.locate(&bank, None, &sweeps).unwrap().0
     };
@@ -1130,12 +1119,7 @@ fn passes_whose_depth_trembles_are_judged_by_what_the_maps_say_of_it() {
             sd.clone().all(|sd| (0.015..0.025).contains(&sd)),
             "{answer:?}"
         );
-        let whole = RobustSweep {
-            record: &record,
-            depth: 0.0,
-            changes: None,
-            is_reference: false,
-        };
+        let whole = RobustSweep::new(&record, 0.0, None);
         let error = question
             .locate(&bank, None, &[whole])
             .unwrap_err()

@@ -94,18 +94,6 @@ impl Design {
         Ok(())
     }
 
-    /// Takes the forces of the map `with` an inclusion for those of the inclusion that is looked for.
-    pub fn set_template(
-        &mut self,
-        question: &Question<'_>,
-        with: &ForceTable,
-        record: &Record,
-    ) -> Result<(), Refusal> {
-        let f1 = expected(record, with, question.depth)?;
-        self.template = difference(&f1, &self.reference);
-        Ok(())
-    }
-
     /// The parts over the standard deviations of the noise, or over the covariance of the two channels where the depths have errors.
     ///
     /// Implements: TRC-086.

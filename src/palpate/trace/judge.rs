@@ -1,7 +1,7 @@
 //! The answer at the position that the maps are for.
 
 use super::cause::Cause;
-use super::design::{Design, squares};
+use super::design::{Design, difference, expected, squares};
 use super::fit::{Fit, MISFIT_RATE};
 use super::question::{Criterion, Question};
 use super::{Record, refused};
@@ -118,7 +118,8 @@ impl Question<'_> {
         record: &Record,
     ) -> Result<Judgement, Refusal> {
         let mut design = Design::new(self, hypotheses.without(), record)?;
-        design.set_template(self, hypotheses.with(), record)?;
+        let f1 = expected(record, hypotheses.with(), self.depth)?;
+        design.template = difference(&f1, &design.reference);
         design.add_depth_error(self, hypotheses.with(), record)?;
         let judged = || {
             let (white, fit) = self.fitted(&design)?;

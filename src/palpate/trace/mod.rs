@@ -220,7 +220,14 @@ impl Trace {
                 table.notes.push(note.into());
             }
             let samples = table.rows;
-            let empty = Refusal::state("no samples under the header", "give at least one row");
+            let (found, right) = match table.missing {
+                0 => ("no samples under the header", "give at least one row"),
+                _ => (
+                    "each sample lacks a number",
+                    "leave out a column that has none",
+                ),
+            };
+            let empty = Refusal::state(found, right);
             empty.at(table.line).when(samples.is_empty())?;
             let abscissa = if table.names[0].starts_with("time") {
                 check_times(&samples)?;
@@ -314,32 +321,6 @@ fn backwards(samples: &[Sample]) -> bool {
     matches!(samples, [(_, first), .., (_, last)] if last[0] < first[0])
 }
 
-/// The samples of lists, whose numbers from 1 stand for lines.
-///
-/// # Errors
-/// As [`Record::along`].
-fn samples(
-    positions: &[f64],
-    depths: &[f64],
-    forces: Force<&[f64]>,
-) -> Result<Vec<Sample>, Refusal> {
-    check_samples("positions", positions, positions.len())?;
-    if !forces.lateral.is_empty() {
-        check_samples("lateral forces", forces.lateral, positions.len())?;
-    }
-    check_samples("normal forces", forces.normal, positions.len())?;
-    let of = |list: &[f64], k: usize| list.get(k).copied().unwrap_or_default();
-    let sample = |k| {
-        [
-            positions[k],
-            forces.normal[k],
-            of(forces.lateral, k),
-            of(depths, k),
-        ]
-    };
-    Ok((0..positions.len()).map(|k| (k + 1, sample(k))).collect())
-}
-
 /// Checks that positions go one way, but for jitter.
 ///
 /// Implements: TRC-004.
@@ -388,11 +369,35 @@ impl Record {
     ///
     /// Implements: TRC-004, TRC-008.
     pub fn new(name: &str, positions: &[f64], forces: Force<&[f64]>) -> Result<Record, Refusal> {
+        Record::listed(name, positions, None, forces)
+    }
+
+    /// The record of lists, whose numbers from 1 stand for lines.
+    fn listed(
+        name: &str,
+        positions: &[f64],
+        depths: Option<&[f64]>,
+        Force { lateral, normal }: Force<&[f64]>,
+    ) -> Result<Record, Refusal> {
         let read = || {
-            let samples = samples(positions, &[], forces)?;
-            check_pass(&samples)?;
-            let (lateral, depths) = (!forces.lateral.is_empty(), false);
-            let has = Has { lateral, depths };
+            let (all, has_lateral) = (positions.len(), !lateral.is_empty());
+            depths.map_or(Ok(()), |depths| check_samples("depths", depths, all))?;
+            check_samples("positions", positions, all)?;
+            if has_lateral {
+                check_samples("lateral forces", lateral, all)?;
+            }
+            check_samples("normal forces", normal, all)?;
+            let of = |list: &[f64], k: usize| list.get(k).copied().unwrap_or_default();
+            let own = depths.unwrap_or_default();
+            let sample = |k| (k + 1, [positions[k], normal[k], of(lateral, k), of(own, k)]);
+            let samples: Vec<Sample> = (0..all).map(sample).collect();
+            if depths.is_none() {
+                check_pass(&samples)?;
+            }
+            let has = Has {
+                lateral: has_lateral,
+                depths: depths.is_some(),
+            };
             Ok(Record::of(name.into(), samples, has))
         };
         read().map_err(|refusal: Refusal| refusal.in_file(name))
@@ -553,7 +558,8 @@ pub fn refused(error: DetectError) -> Refusal {
     match error {
         DetectError::NoSignal => {
             let found = "the maps do not differ at the samples, and leave no signal to decide by";
-            Refusal::state(found, "")
+            let right = "check where the samples are: a depth below the surface is positive";
+            Refusal::state(found, right)
         }
         error => Refusal::state(error, ""),
     }

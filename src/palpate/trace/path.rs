@@ -1,10 +1,9 @@
 //! Records whose samples have depths of their own: the probe may go forward and back, at several depths.
 
-use super::{Has, JITTER, Record, samples};
+use super::{JITTER, Record};
 use crate::force::Force;
 use crate::force_map::SAME_POSITION;
 use crate::refusal::Refusal;
-use crate::stats::error::check_samples;
 use crate::text::extremes;
 
 impl Record {
@@ -32,14 +31,7 @@ impl Record {
         depths: &[f64],
         forces: Force<&[f64]>,
     ) -> Result<Record, Refusal> {
-        let read = || {
-            check_samples("depths", depths, positions.len())?;
-            let samples = samples(positions, depths, forces)?;
-            let (lateral, depths) = (!forces.lateral.is_empty(), true);
-            let has = Has { lateral, depths };
-            Ok(Record::of(name.into(), samples, has))
-        };
-        read().map_err(|refusal: Refusal| refusal.in_file(name))
+        Record::listed(name, positions, Some(depths), forces)
     }
 
     /// A record without forces, for what can be found where its samples are (m). `depths` are empty for a sweep at one depth.

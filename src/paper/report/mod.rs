@@ -32,8 +32,8 @@
 //! let (gel, inclusion) = (model("none")?, model("6.6")?);
 //! let (depths, laterals) = ([2e-3, 4e-3], [-5e-3, 0.0, 5e-3]);
 //! let run = Run {
-//!     reference: gel.map(&depths, &laterals, &|_| ())?,
-//!     maps: vec![inclusion.map(&depths, &laterals, &|_| ())?],
+//!     reference: gel.map(&depths, &laterals, &|_| true)?,
+//!     maps: vec![inclusion.map(&depths, &laterals, &|_| true)?],
 //!     measured: vec![],
 //!     changes: None,
 //!     deformed: DeformedMesh::solve(&inclusion, Pose { depth: 4e-3, lateral: 0.0 })?,

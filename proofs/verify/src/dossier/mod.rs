@@ -19,6 +19,7 @@ use super::evidence::{Counts, Evidence, PARTS, Verdict};
 use super::statistics::{self, Row};
 use super::system::System;
 use palpate_paper::report::html::STYLE;
+use palpate_program::output::csv_line;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 const OWN_STYLE: &str = include_str!("style.css");
@@ -127,18 +128,6 @@ pub fn test_runs(found: &Evidence) -> String {
         })
     });
     [heads.to_string()].into_iter().chain(rows).collect()
-}
-
-/// A line of CSV.
-fn csv_line(cells: impl IntoIterator<Item = String>) -> String {
-    let quoted = cells.into_iter().map(|cell| {
-        if cell.contains([',', '"']) {
-            format!("\"{}\"", cell.replace('"', "\"\""))
-        } else {
-            cell
-        }
-    });
-    quoted.collect::<Vec<_>>().join(",") + "\n"
 }
 
 impl Page<'_> {

@@ -22,10 +22,11 @@ const ENDS: [[f64; 4]; 2] = [[2.0, 1.0, 1.0, 3.0], [2.0, 1.0, 5.0, -1.0]];
 fn places(draw: &Draw<'_>, stream: u64) -> Outcome<Vec<(f64, PlacePosterior)>> {
     let axes = [vec![0.0, 1.0], vec![0.0], vec![0.0], vec![0.0]];
     // Noise that is half as large again in the normal channel as is thought.
-    let scale = match draw.defect {
-        "variance_of_one_channel" => [1.0, 1.0, 1.0 / 1.5, 1.0 / 1.5],
-        _ => [1.0; 4],
-    };
+    let scale = draw.planted(
+        "variance_of_one_channel",
+        [1.0, 1.0, 1.0 / 1.5, 1.0 / 1.5],
+        [1.0; 4],
+    );
     let mut ends = ENDS.map(|end| [0, 1, 2, 3].map(|sample: usize| scale[sample] * end[sample]));
     if draw.defect == "template_of_the_neighbour" {
         ends.reverse();
@@ -76,11 +77,7 @@ fn reliability(draw: &Draw<'_>) -> Outcome<Figure> {
     let templates = vec![GAMMA[0], 0.0, 0.0, GAMMA[1]];
     let level = NoiseLevel::Known;
     let detector = BankDetector::new(&axes, templates, &PRIOR, vec![], &[], level)?;
-    let presumed = if draw.defect == "prior_left_out" {
-        0.5
-    } else {
-        PRIOR_H1
-    };
+    let presumed = draw.planted("prior_left_out", 0.5, PRIOR_H1);
     let generator = draw.generator(820 + draw.replicate);
     let excess = (0..draw.trials()).map(|trial| {
         let [a, b, ..] = generator.words([0, trial, 2, 0]);

@@ -65,20 +65,14 @@ fn position_errors(draw: &Draw<'_>, template: &Force<Vec<f64>>, place: usize) ->
 
 /// Errors of the position meet the bound of Cramér and Rao, until the signal is too weak.
 fn position_error(draw: &Draw<'_>) -> Outcome<Figure> {
-    let gamma = match draw.defect {
-        "signal_below_the_threshold_effect" => 2.5,
-        _ => 25.0,
-    };
+    let gamma = draw.planted("signal_below_the_threshold_effect", 2.5, 25.0);
     let template = template(61, 6.0, gamma);
     // No slope is left at the ends.
     let square = |pair: &[f64]| (0.5 * (pair[2] - pair[0])).powi(2);
     let channels = [&template.lateral, &template.normal].into_iter();
     let squares: f64 = channels.flat_map(|of| of.windows(3)).map(square).sum();
     let sd = 1.0 / squares.sqrt();
-    let place = match draw.defect {
-        "template_shifted" => 61,
-        _ => 60,
-    };
+    let place = draw.planted("template_shifted", 61, 60);
     let errors = position_errors(draw, &template, place)?;
     variance_test(&errors, Law { mean: 0.0, sd }, draw.row.alpha)
 }
@@ -145,10 +139,7 @@ fn cut_position_error(draw: &Draw<'_>) -> Outcome<Figure> {
 fn mixture_false_alarms(draw: &Draw<'_>) -> Outcome<Figure> {
     let generator = draw.generator(620 + draw.replicate);
     let eta = neyman_pearson_false_alarm_threshold(2.0, 0.05)?;
-    let prior_left_out = match draw.defect {
-        "prior_left_out" => core::f64::consts::LN_2,
-        _ => 0.0,
-    };
+    let prior_left_out = draw.planted("prior_left_out", core::f64::consts::LN_2, 0.0);
     let mut alarms = 0;
     for trial in 0..draw.trials() {
         let theta = 2.0 * generator.normal(trial, 0) - 2.0;

@@ -203,10 +203,7 @@ fn coarse_noise_variance(draw: &Draw<'_>) -> Outcome<Figure> {
     let f0 = setting.f0.as_deref();
     let generator = draw.generator(8 + 10 * draw.replicate);
     let simulation = Simulation::new(f0, setting.template.as_deref(), setting.noise_sd, generator)?;
-    let excess = match draw.defect {
-        "variance_off_1_percent" => libm::sqrt(1.01),
-        _ => 1.0,
-    };
+    let excess = draw.planted("variance_off_1_percent", libm::sqrt(1.01), 1.0);
     let mut residual = [0.0; 16];
     let mut noise = Vec::new();
     for trial in 0..draw.trials() {

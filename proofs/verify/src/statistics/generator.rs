@@ -31,11 +31,7 @@ fn standard_normal(draw: &Draw<'_>) -> Outcome<Figure> {
 
 fn tails(draw: &Draw<'_>) -> Outcome<Figure> {
     // Without the ziggurat's tail there is nothing beyond 3.852.
-    let largest = if draw.defect == "tail_left_out" {
-        3.852
-    } else {
-        f64::INFINITY
-    };
+    let largest = draw.planted("tail_left_out", 3.852, f64::INFINITY);
     let deviates = deviates(draw, 510);
     let tail = deviates.iter().filter(|x| x.abs().min(largest) > 4.0);
     let count = tail.count() as u64;
@@ -46,11 +42,7 @@ fn tails(draw: &Draw<'_>) -> Outcome<Figure> {
 /// index of one to those of the other.
 fn signs(draw: &Draw<'_>, stream: u64, step: (u64, u64)) -> Outcome<Figure> {
     let generator = draw.generator(stream + draw.replicate);
-    let (step_trial, step_index) = if draw.defect == "same_address" {
-        (0, 0)
-    } else {
-        step
-    };
+    let (step_trial, step_index) = draw.planted("same_address", (0, 0), step);
     let equal = (0..draw.trials()).filter(|&i| {
         let one = generator.normal(2 * i, 6);
         let other = generator.normal(2 * i + step_trial, 6 + step_index);

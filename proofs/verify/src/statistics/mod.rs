@@ -82,6 +82,11 @@ impl Draw<'_> {
     fn trials(&self) -> u64 {
         self.row.trials as u64
     }
+
+    /// A value, or another with this defect.
+    fn planted<T>(&self, defect: &str, wrong: T, right: T) -> T {
+        if self.defect == defect { wrong } else { right }
+    }
 }
 
 /// The whole battery, in a fixed order.

@@ -167,11 +167,7 @@ fn squared(defect: &str, centre: f64, found: SubspaceStatistic) -> Outcome<f64> 
 fn errors(draw: &Draw<'_>, level: NoiseLevel, stream: u64) -> Outcome<Figure> {
     const RATE: f64 = 0.01;
     const BIAS: f64 = 0.5;
-    let presumed = if draw.defect == "bias_left_out" {
-        0.0
-    } else {
-        BIAS
-    };
+    let presumed = draw.planted("bias_left_out", 0.0, BIAS);
     let statistics = statistics(draw, SHORT, BIAS, stream)?.into_iter();
     let wrong = statistics.map(|(is_there, found)| {
         let mut test = found.test(level, presumed)?;

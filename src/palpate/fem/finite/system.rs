@@ -30,7 +30,7 @@ use crate::refusal::Refusal;
 /// Implements: FIN-002.
 #[derive(Debug, Clone)]
 pub(super) struct System {
-    elements: Vec<(Law, Vec<Point>, [u32; UNKNOWNS])>,
+    pub elements: Vec<(Law, Vec<Point>, [u32; UNKNOWNS])>,
     symbolic: SymbolicSparseColMat<u32>,
     argsort: Argsort<u32>,
     elimination: Arc<SymbolicCholesky<u32>>,
@@ -112,16 +112,6 @@ impl System {
     /// Displacement of a node, m.
     pub fn displacement(&self, state: &[f64], node: usize) -> [f64; 2] {
         [0, 1].map(|k| self.unknown(node, k).map_or(0.0, |unknown| state[unknown]))
-    }
-
-    /// The unknowns that are pressures.
-    #[cfg(test)]
-    pub fn pressure_unknowns(&self) -> Vec<usize> {
-        let pressures = self
-            .elements
-            .iter()
-            .flat_map(|(_, _, unknowns)| &unknowns[2 * NODES..]);
-        pressures.map(|&unknown| unknown as usize).collect()
     }
 
     /// Cauchy stress (σ_xx, σ_yy, σ_zz, σ_xy), Pa, at a point of an element, given in parent coordinates, under the displacement

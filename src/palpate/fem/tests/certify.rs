@@ -48,9 +48,12 @@ fn bands_are_the_error_times_the_safety_factor() {
 fn a_certified_map_has_the_published_forces_and_bands_that_hold_the_error() {
     let model = Model::new(&builtin("2.6"), MESH_SIZE, Contact::default()).unwrap();
     let (depths, laterals) = ([1e-3, 2.5e-3, 4e-3], [-4e-3, -1e-3, 0.0, 2e-3, 6e-3]);
-    let plain = model.map(&depths, &laterals, &|_| ()).unwrap();
+    let plain = model.map(&depths, &laterals, &|_| true).unwrap();
     let counted = std::cell::Cell::new(0);
-    let count = |poses| counted.set(counted.get() + poses);
+    let count = |poses| {
+        counted.set(counted.get() + poses);
+        true
+    };
     let map = certified_map(&model, &depths, &laterals, &count).unwrap();
     assert_eq!(map.table(), plain.table());
     // Three meshes over |x| = 0, 1, 2, 4, 6 mm.
@@ -60,7 +63,7 @@ fn a_certified_map_has_the_published_forces_and_bands_that_hold_the_error() {
     assert!(bands.nodes[0] > bands.nodes[1] && bands.nodes[1] > bands.nodes[2]);
     assert_eq!(bands.lateral_force_band.row(1)[2], 0.0);
     // A mesh four times as fine leaves some 1/16 of the error, or 1/4 at the first order.
-    let truth = finest().map(&depths, &laterals, &|_| ()).unwrap();
+    let truth = finest().map(&depths, &laterals, &|_| true).unwrap();
     let (mut within, mut widest) = (0, 0.0f64);
     let truth = [truth.table().normal(), truth.table().lateral().unwrap()];
     for (kind, (banded, truth)) in banded(&map).iter().zip(truth).enumerate() {
@@ -85,7 +88,7 @@ fn a_certified_map_has_the_published_forces_and_bands_that_hold_the_error() {
 #[test]
 fn meshes_that_are_too_much_alike_have_no_bands() {
     let model = coarse(&builtin("none"), Contact::default());
-    let never = |_: usize| panic!("solved");
+    let never = |_: usize| -> bool { panic!("solved") };
     let error = certified_map(&model, &[1e-3], &[0.0], &never).unwrap_err();
     let expected = "the three meshes for the error bands have 1631, 1533 and 1481 nodes, too much alike to tell how far a force is off; give a smaller mesh size";
     assert!(matches!(error, FemError::Refused(_)));
@@ -116,7 +119,7 @@ fn other_meshes_of_the_same_phantom_agree_within_their_bands() {
     let (depths, laterals) = ([1e-3, 2.5e-3, 4e-3], [-6e-3, -2e-3, 2e-3, 6e-3]);
     let certified = |phantom| {
         let model = Model::new(&phantom, MESH_SIZE, Contact::default()).unwrap();
-        let map = certified_map(&model, &depths, &laterals, &|_| ()).unwrap();
+        let map = certified_map(&model, &depths, &laterals, &|_| true).unwrap();
         (model.mesh().symmetric, banded(&map))
     };
     // A nanometre off the axis, the disc makes the same forces on a mesh that is not mirrored; 3 mm off, those of the disc on

@@ -39,7 +39,7 @@ fn a_probe_on_too_few_contact_points_is_refused() {
     let expected = "the mesh has 0 contact points under the probe at depth 0.05 mm, lateral 0.0 mm, too few for a force; give a smaller mesh size or a larger probe";
     let error = small.solve(deep).unwrap_err();
     assert_eq!(error.to_string(), expected);
-    let map = small.map(&[light.depth, deep.depth], &[0.0], &|_| ());
+    let map = small.map(&[light.depth, deep.depth], &[0.0], &|_| true);
     assert_eq!(map.unwrap_err().to_string(), expected);
     assert_eq!(small.path(&[deep]).unwrap_err().to_string(), expected);
     // R/50, and just beyond it with 2.6 mm of the surface below the chord.

@@ -19,7 +19,7 @@ const MILLIMETRES: [f64; 3] = [1e-3, 2.5e-3, 4e-3];
 fn maps_are_mirror_symmetric_to_the_bit() {
     let model = coarse("4.6", Contact::DeformedNormal);
     let laterals = [-5e-3, -2e-3, 0.0, 2e-3, 6e-3];
-    let map = model.map(&MILLIMETRES, &laterals, &|_| ()).unwrap();
+    let map = model.map(&MILLIMETRES, &laterals, &|_| true).unwrap();
     for row in 0..3 {
         let (normal, lateral) = (
             map.table().normal().row(row),
@@ -79,7 +79,7 @@ fn a_pose_that_converges_alone_converges_after_others() {
     let phantom = Phantom::from_toml(INSIDE_OUT, "soft.toml").unwrap();
     let model = Model::new(&phantom, 1e-3, Contact::DeformedNormal).unwrap();
     assert!(model.solve(pose(3e-3, 0.0)).is_ok());
-    let map = model.map(&[2e-3, 3e-3], &[0.0], &|_| ()).unwrap();
+    let map = model.map(&[2e-3, 3e-3], &[0.0], &|_| true).unwrap();
     // The first pose is solved as alone.
     let alone = model.solve(pose(2e-3, 0.0)).unwrap();
     assert_eq!(map.table().normal().row(0)[0], alone.force.normal);
@@ -106,7 +106,10 @@ fn a_map_holds_the_forces_of_its_poses() {
     let model = coarse("2.6", Contact::DeformedNormal);
     let laterals = [-3e-3, 1e-3, 7e-3];
     let counted = std::cell::Cell::new(0);
-    let count = |poses| counted.set(counted.get() + poses);
+    let count = |poses| {
+        counted.set(counted.get() + poses);
+        true
+    };
     let map = model.map(&MILLIMETRES, &laterals, &count).unwrap();
     assert_of_its_poses(&map, &model);
     // The axis is solved as well, for the mirror images.
@@ -121,7 +124,7 @@ fn positions_that_round_to_each_other_are_one() {
     let laterals = [-0.3e-3, 0.1e-3 + 0.2e-3 + 1e-16];
     assert_ne!(-laterals[0], laterals[1]);
     assert_eq!(model.solved_laterals(&laterals), [0.0, 0.3e-3]);
-    let map = model.map(&[1e-3], &laterals, &|_| ()).unwrap();
+    let map = model.map(&[1e-3], &laterals, &|_| true).unwrap();
     let normal = map.table().normal().row(0);
     assert_eq!(normal[0], normal[1]);
 }
@@ -136,7 +139,7 @@ fn a_phantom_that_is_all_corner_is_judged_as_a_whole() {
         parts.probe.radius = 0.3e-3;
     });
     let model = Model::new(&tiny.unwrap(), MESH_SIZE, Contact::default()).unwrap();
-    let map = model.map(&[0.1e-3], &[0.0], &|_| ()).unwrap();
+    let map = model.map(&[0.1e-3], &[0.0], &|_| true).unwrap();
     let det = map.certificate().unwrap().smallest_det.det;
     assert!(0.0 < det && det < 1.0, "{det}");
 }
@@ -152,7 +155,7 @@ fn a_small_gel_is_as_inside_out_as_a_large_one_of_its_shape() {
             (parts.probe.radius, parts.probe.length) = (scale * 4e-3, scale * 30e-3);
         });
         let model = Model::new(&gel.unwrap(), scale * 1e-3, Contact::default()).unwrap();
-        let map = model.map(&[scale * 3e-3], &[0.0], &|_| ()).unwrap();
+        let map = model.map(&[scale * 3e-3], &[0.0], &|_| true).unwrap();
         map.certificate().unwrap().smallest_det.det
     };
     let (large, small) = (det(1.0), det(0.1));
@@ -166,7 +169,10 @@ fn a_map_of_an_asymmetric_phantom_solves_each_side_by_itself() {
     let model = super::coarse(&off_centre(2.6, 2.0), Contact::DeformedNormal);
     let laterals = [-4e-3, 0.0, 4e-3];
     let counted = std::cell::Cell::new(0);
-    let count = |poses| counted.set(counted.get() + poses);
+    let count = |poses| {
+        counted.set(counted.get() + poses);
+        true
+    };
     let map = model.map(&MILLIMETRES, &laterals, &count).unwrap();
     assert_eq!(counted.get(), 9);
     assert_eq!(model.solved_laterals(&laterals), laterals);
@@ -181,7 +187,7 @@ fn a_map_of_an_asymmetric_phantom_solves_each_side_by_itself() {
         assert!(along[1] < -1e-4, "{along:?}");
     }
     // From x = 0 on it is the same, where a mirror image would have no lateral force.
-    let half = model.map(&MILLIMETRES, &laterals[1..], &|_| ()).unwrap();
+    let half = model.map(&MILLIMETRES, &laterals[1..], &|_| true).unwrap();
     assert_of_its_poses(&half, &model);
     for row in 0..3 {
         let [whole, half] = [&map, &half].map(|map| map.table().lateral().unwrap().row(row));
@@ -222,7 +228,7 @@ fn a_lopsided_inclusion_on_the_axis_is_solved_on_either_side() {
             (sides - 1.0).abs() > 0.02,
             "nothing to tell the sides: {sides}"
         );
-        let map = model.map(&[3e-3], &[-3e-3, 0.0, 3e-3], &|_| ()).unwrap();
+        let map = model.map(&[3e-3], &[-3e-3, 0.0, 3e-3], &|_| true).unwrap();
         assert_of_its_poses(&map, &model);
     }
 }
@@ -268,7 +274,10 @@ fn progress_is_told_of_what_is_solved() {
     let model = Model::new(&phantom, 1e-3, Contact::DeformedNormal).unwrap();
     let told = |depth: f64| {
         let told = std::cell::Cell::new(0);
-        let count = |poses| told.set(told.get() + poses);
+        let count = |poses| {
+            told.set(told.get() + poses);
+            true
+        };
         let map = model.map(&[depth], &[1e-3, 2e-3], &count);
         (map.is_ok(), told.get())
     };
@@ -281,7 +290,7 @@ fn progress_is_told_of_what_is_solved() {
 #[test]
 fn the_certificate_tells_the_checks_of_every_pose() {
     let model = coarse("2.6", Contact::VerticalGap);
-    let map = model.map(&MILLIMETRES, &[0.0, 3e-3], &|_| ()).unwrap();
+    let map = model.map(&MILLIMETRES, &[0.0, 3e-3], &|_| true).unwrap();
     let certificate = map.certificate().unwrap();
     let residual = certificate.worst_relative_residual;
     assert!(residual > 0.0 && residual < 1e-8);
@@ -313,7 +322,7 @@ fn a_material_much_stiffer_than_another_is_refused_with_a_remedy_that_hardly_cha
     };
     // Rounding of a nearly rigid body leaves a residual in proportion to its modulus, but hardly changes the force.
     let [asked, advised] = [1e6, 5e3].map(model);
-    let map = |model: &Model| model.map(&MILLIMETRES, &[0.0, 4e-3], &|_| ());
+    let map = |model: &Model| model.map(&MILLIMETRES, &[0.0, 4e-3], &|_| true);
     let said = map(&asked).unwrap_err().to_string();
     let remedy = "if a material is more than 5000 times as stiff as another, make it 5000 times as stiff, which changes the force by less than 0.1 % unless the body is thin";
     assert!(said.contains(remedy), "{said}");
@@ -333,7 +342,7 @@ fn a_material_much_stiffer_than_another_is_refused_with_a_remedy_that_hardly_cha
 #[test]
 fn axes_that_make_no_map_are_refused_before_anything_is_solved() {
     let model = coarse("none", Contact::DeformedNormal);
-    let never = |_: usize| panic!("solved");
+    let never = |_: usize| -> bool { panic!("solved") };
     for (depths, laterals) in [
         (vec![], vec![0.0]),
         (vec![1e-3], vec![]),

@@ -16,12 +16,7 @@ fn detector<'a>(question: RobustQuestion<'a>, over: &Record) -> RobustDetector<'
         amplitude_sd: 0.4,
         prior: 1.0,
     };
-    let sweep = RobustSweep {
-        record: over,
-        depth: 4e-3,
-        changes: None,
-        is_reference: false,
-    };
+    let sweep = RobustSweep::new(over, 4e-3, None);
     RobustDetector::new(question, &flat(), &[sweep], &[signal]).unwrap()
 }
 

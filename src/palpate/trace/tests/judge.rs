@@ -72,7 +72,7 @@ fn maps_that_do_not_fit_are_refused() {
         judged(&record, &table(0.0), 0.0035),
         judged(&far, &table(0.0), 0.001),
     ];
-    let expected = "t.csv: the maps do not differ at the samples, and leave no signal to decide by
+    let expected = "t.csv: the maps do not differ at the samples, and leave no signal to decide by; check where the samples are: a depth below the surface is positive
 t.csv: depth 3.5 mm is outside the map, which has 1.0 to 3.0 mm
 t.csv:5: position 3.1 mm is outside the maps, which have -3.0 to 3.0 mm; leave it out, or use --trim";
     assert_eq!(found.join("\n"), expected);

@@ -7,7 +7,7 @@ use crate::fem::{Contact, Model};
 use crate::force_map::tests::table_of;
 use crate::phantom::Phantom;
 use crate::stats::random::Generator;
-use crate::trace::design::{Design, expected, slope};
+use crate::trace::design::{Design, difference, expected, slope};
 use palpate_asserts::assert_near;
 
 /// Forces that are a cubic of the depth (mm) and a line in x (mm), over rows of uneven steps.
@@ -142,8 +142,8 @@ fn four_rows_tell_the_forces_between_them() {
     let worst = |name: &str, rows: &[f64], between: &[f64]| {
         let model = model(name);
         let metres = |mm: &[f64]| -> Vec<f64> { mm.iter().map(|mm| 1e-3 * mm).collect() };
-        let map = model.map(&metres(rows), &x, &|_| ()).unwrap();
-        let solved = model.map(&metres(between), &x, &|_| ()).unwrap();
+        let map = model.map(&metres(rows), &x, &|_| true).unwrap();
+        let solved = model.map(&metres(between), &x, &|_| true).unwrap();
         let (mut of_path, mut of_line) = (0.0, 0.0);
         for (row, &depth) in metres(between).iter().enumerate() {
             let path = map.table().path(&[depth; 2], &x).unwrap();
@@ -323,7 +323,8 @@ fn errors_of_the_depths_are_noise_of_both_channels() {
         };
         let maps = [0.0, 0.2].map(judge::gel);
         let mut design = Design::new(&question, &maps[0], &record).unwrap();
-        design.set_template(&question, &maps[1], &record).unwrap();
+        let with = expected(&record, &maps[1], question.depth).unwrap();
+        design.template = difference(&with, &design.reference);
         let sd = question.noise.sd.unwrap();
         (design.clone(), design.whitened(sd), sd)
     };

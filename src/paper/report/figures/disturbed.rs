@@ -88,12 +88,7 @@ fn gammas(run: &Run, map: &ForceMap, depth: f64, length: f64) -> Result<Gammas, 
         .map(|k| STEP * (f64::from(k) - 0.5 * f64::from(samples)))
         .collect();
     let record = Record::planned(&positions, &[])?;
-    let sweep = RobustSweep {
-        record: &record,
-        depth,
-        changes: run.changes.as_ref(),
-        is_reference: false,
-    };
+    let sweep = RobustSweep::new(&record, depth, run.changes.as_ref());
     let (without, with) = (run.reference.table(), map.table());
     let hypotheses = Hypotheses::of_tables(without, with).map_err(incomparable(map))?;
     let noise_sd = Force::new(NOISE_SD, NOISE_SD);

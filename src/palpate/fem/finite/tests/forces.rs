@@ -111,7 +111,7 @@ fn a_map_says_its_law_and_is_symmetric_without_friction() {
     let phantom = builtin("6.6");
     let model = Model::new(&phantom, 2e-3, Contact::default()).unwrap();
     let laterals = [-2e-3, 0.0, 2e-3];
-    let map = model.map(&[1e-3, 2e-3], &laterals, &|_| ()).unwrap();
+    let map = model.map(&[1e-3, 2e-3], &laterals, &|_| true).unwrap();
     let certificate = map.certificate().unwrap();
     let law = "neo-Hookean (Bonet and Wood)";
     assert_eq!(certificate.law.as_deref(), Some(law));

@@ -9,6 +9,8 @@ mod newton;
 mod refused;
 mod sphere;
 
+use super::law::UNKNOWNS;
+use super::system::System;
 use super::{Equilibrium, FiniteModel, Friction};
 use crate::fem::Pose;
 use crate::fem::element::NODES;
@@ -19,6 +21,13 @@ fn finite(phantom: &Phantom) -> Phantom {
     phantom
         .changed(|parts| parts.strain = Strain::Finite)
         .unwrap()
+}
+
+/// The unknowns of a system that are pressures.
+fn pressure_unknowns(system: &System) -> Vec<usize> {
+    let of = |(_, _, unknowns): &(_, _, [u32; UNKNOWNS])| unknowns[2 * NODES..].to_vec();
+    let pressures = system.elements.iter().flat_map(of);
+    pressures.map(|unknown| unknown as usize).collect()
 }
 
 fn builtin(name: &str) -> Phantom {
