@@ -104,14 +104,12 @@ impl Hill<'_> {
             .map(|(z, signal)| z - signal);
         let rest: Vec<f64> = rest.collect();
         let rise = DVector::from_iterator(free.len(), slopes.iter().map(|of| dot(of, &rest)));
-        let bend = |damping: f64| {
-            DMatrix::from_fn(free.len(), free.len(), |i, j| {
-                let damped = if i == j { 1.0 + damping } else { 1.0 };
-                damped * dot(&slopes[i], &slopes[j])
-            })
-        };
+        let bend = |i: usize, j: usize| dot(&slopes[i], &slopes[j]);
+        let bend = DMatrix::from_fn(free.len(), free.len(), bend);
         DAMPINGS.into_iter().find_map(|damping| {
-            let moves = bend(damping).cholesky()?.solve(&rise);
+            let mut damped = bend.clone();
+            damped.set_diagonal(&((1.0 + damping) * bend.diagonal()));
+            let moves = damped.cholesky()?.solve(&rise);
             let mut at = from.at;
             for (&axis, by) in free.iter().zip(&moves) {
                 let points = &self.axes[axis].points;
