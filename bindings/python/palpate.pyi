@@ -180,6 +180,7 @@ class _SmallestDiameter(TypedDict):
     depth_mm: float
     youngs_modulus_kpa: float
     smallest_diameter_mm: float | None
+    is_beyond_bank: bool
 
 class _Reach(TypedDict):
     gamma_needed: float

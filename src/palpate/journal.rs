@@ -85,6 +85,10 @@ impl Journal {
         let mut options = File::options();
         options.read(true).write(true).create(true).truncate(false);
         let file = options.open(&path).map_err(failed("open", &path))?;
+        // A pipe would be read for ever.
+        if !file.metadata().map_err(failed("open", &path))?.is_file() {
+            return Err(no_journal(command).in_file(path.display().to_string()));
+        }
         let lines = Lines::open(file, path, &line(request), command, take)?;
         Ok(Journal(Mutex::new(lines)))
     }
@@ -111,6 +115,13 @@ impl Journal {
     }
 }
 
+fn no_journal(command: &str) -> Refusal {
+    Refusal::state(
+        format_args!("is no journal of '{command}'"),
+        "choose another file",
+    )
+}
+
 impl<F: Store> Lines<F> {
     /// Takes the lines of a file, as [`Journal::open`], and cuts off what is behind them.
     fn open(
@@ -135,8 +146,7 @@ impl<F: Store> Lines<F> {
         if first == request.as_bytes() {
             whole = take_lines(reader, &path, 2, take)? + first.len() as u64;
         } else if !is_of_kind(&first, request) {
-            let found = format!("is no journal of '{command}'; choose another file");
-            return Err(refused(found));
+            return Err(no_journal(command).in_file(path.display().to_string()));
         } else {
             if !first.ends_with(b"\n") {
                 let rest = reader.skip_until(b'\n');

@@ -85,7 +85,7 @@ pub(super) enum Command {
     /// Lists the HID devices of this machine and whether they can render a force map
     #[command(after_help = "Example:\n  palpate devices --format json")]
     Devices(devices::DevicesArguments),
-    /// Runs the paper's two-alternative forced-choice experiment: which of two samples has the inclusion?
+    /// Runs the paper's two-alternative forced-choice experiment: which of two gels has the inclusion?
     #[command(
         after_help = "Example:\n  palpate experiment --reference none.json --inclusion 4.6=map.json --journal answers.txt --seed 1"
     )]

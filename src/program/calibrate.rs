@@ -35,7 +35,7 @@ pub struct CalibrateArguments {
     /// Lateral position of the curves in mm, or of each of several
     #[arg(long = "lateral-mm", value_name = "X", value_parser = position, value_delimiter = ',', allow_hyphen_values = true, default_value = "0", requires = "phantom")]
     laterals: Vec<f64>,
-    /// Where the probe touches the gel, in mm on the depths of the curve, or auto to estimate it
+    /// Depth at which the probe touches the gel, in mm on the scale of the curve, or auto to estimate it
     #[arg(
         long = "contact",
         value_name = "auto|MM",

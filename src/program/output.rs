@@ -25,7 +25,7 @@ pub enum Format {
     Table,
     /// For programs; keys carry the unit.
     Json,
-    /// For spreadsheets: a line for each value, with its key.
+    /// For spreadsheets: a line for each record or pose, or for each value with its key.
     Csv,
 }
 

@@ -12,13 +12,13 @@ use palpate::simulation::Path;
 #[derive(Debug, Args)]
 #[group(skip)]
 pub struct PathArguments {
-    /// Depths of the probe in mm, a pass for each in turn, there and back: a,b,c in any order or from:to:step
+    /// Depths of the probe in mm, with one pass at each, in alternate directions: a,b,c in any order or from:to:step
     #[arg(long = "depths-mm", value_name = "LIST", value_parser = passes, allow_hyphen_values = true, group = "way")]
     depths: Option<List>,
-    /// Where a pass begins, in mm
+    /// Lateral position where the first pass begins, in mm
     #[arg(long = "from-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "-8", requires = "depths")]
     from: f64,
-    /// Where it ends, and the way back begins, in mm
+    /// Lateral position where the first pass ends and the second begins, in mm
     #[arg(long = "to-mm", value_name = "X", value_parser = position, allow_hyphen_values = true, default_value = "8", requires = "depths")]
     to: f64,
     /// Speed of a pass in mm/s

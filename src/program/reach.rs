@@ -44,7 +44,7 @@ pub struct ReachArguments {
     /// Quantities to take as known instead of fitting: a list of offset, drift, gain and depth, or 'all' or 'none'
     #[arg(long, value_name = "LIST", value_parser = Known::parse, default_value = "depth")]
     known: Known,
-    /// Adds γ beside each class of disturbance that palpate detect averages over
+    /// Adds the γ that remains after each class of disturbance of 'palpate detect' is allowed for
     #[arg(long)]
     classes: bool,
     /// Output format

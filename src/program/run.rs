@@ -35,7 +35,7 @@ pub struct RunArguments {
     config: Option<PathBuf>,
     #[command(flatten)]
     theory: TheoryArguments,
-    /// Compares small strain, finite strain and friction in the report; takes some minutes
+    /// Compares small strain, finite strain and friction in the report; takes a quarter of an hour for the paper's phantoms
     #[arg(long)]
     compare_theories: bool,
     /// Results of 'palpate study merge' for the same phantoms, to include in the report

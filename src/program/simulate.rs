@@ -26,7 +26,7 @@ const SAME_STEP: f64 = 3e-6;
 /// Arguments of `palpate simulate`.
 #[derive(Debug, Args)]
 pub struct SimulateArguments {
-    /// Force map of the gel, with lateral forces and depths from 0 on
+    /// Force map of the gel, which must have lateral forces and begin at depth 0
     #[arg(long, value_name = "MAP", required_unless_present = "phantom")]
     map: Option<PathBuf>,
     /// The gel, in place of its map: a built-in phantom or a phantom file
@@ -38,10 +38,10 @@ pub struct SimulateArguments {
     motion: MotionArguments,
     #[command(flatten)]
     sensor: SensorArguments,
-    /// Seed of all that is random
+    /// Seed of all random numbers
     #[arg(long, value_name = "SEED", default_value_t = 1999)]
     seed: u64,
-    /// Number of records, which differ in all that is random
+    /// Number of records, each with its own random numbers
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     records: u32,
     /// New folder for the records, record-0001.csv and so on [default: a single record is printed]
@@ -83,13 +83,13 @@ struct SensorArguments {
     /// Standard deviation of the drift of each force over a record, in N
     #[arg(long, value_name = "S", value_parser = newtons_or_zero, allow_hyphen_values = true, default_value = "0")]
     drift_sd_n: f64,
-    /// Smallest difference of two forces, in N
+    /// Resolution of the sensor in N: each force is rounded to a multiple of it
     #[arg(long, value_name = "Q", value_parser = newtons_or_zero, allow_hyphen_values = true, default_value = "0")]
     resolution_n: f64,
     /// Standard deviation of the error of each measured depth, in mm
     #[arg(long = "depth-noise-mm", value_name = "S", value_parser = length_or_zero, allow_hyphen_values = true, default_value = "0")]
     depth_noise: f64,
-    /// Leaves out the column of depths, as a laboratory does that states one depth
+    /// Writes no column depth_mm; give 'palpate detect' the depth with --depth-mm
     #[arg(long)]
     no_depths: bool,
 }

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use askama::Template;
 use clap::{Args, ValueEnum};
 
-use super::CliError;
 use super::error::refuse;
 use super::numbers::{List, contact, depths, friction, length, positions};
 use super::output::{file_of, print, warn, write};
 use super::progress::{bar, tell_large_mesh};
+use super::{CliError, Format};
 use palpate::decimal::{format_scaled, mm};
 use palpate::fem::certify::certified_map;
 use palpate::fem::{Contact, MESH_SIZE, Model, Pose, PoseSolution, SMALL_STRAIN_LIMIT};
@@ -42,25 +42,15 @@ pub struct SolveArguments {
     /// Writes the deformed mesh with stresses for ParaView; single pose only
     #[arg(long, value_name = "FILE")]
     vtu: Option<PathBuf>,
-    /// Leads the probe down at the first lateral position, then to the right at the last depth; nodes stick and slip
+    /// Moves the probe down at the first lateral position, then to the right at the last depth; the surface sticks to the probe or slips
     #[arg(long, conflicts_with_all = ["certify", "vtu"])]
     path: bool,
     /// Writes the deformed mesh of each pose of the path for ParaView
     #[arg(long, value_name = "FILE.pvd", requires = "path", value_parser = file_of("pvd", "the list of the poses is PVD"))]
     pvd: Option<PathBuf>,
     /// Output format
-    #[arg(long, value_enum, default_value_t = MapFormat::Table)]
-    format: MapFormat,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MapFormat {
-    /// For people.
-    Table,
-    /// The force map, with mesh, residuals and error bands.
-    Json,
-    /// One row per pose.
-    Csv,
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
 }
 
 /// The theory of a phantom, where it is not that of its file.
@@ -153,9 +143,9 @@ pub fn solve(arguments: &SolveArguments) -> Result<(), CliError> {
     let strain = tell_large_strain(&map, phantom.name());
     print(&match arguments.format {
         // Writing to a String does not fail.
-        MapFormat::Table => Table { map: &map }.render().unwrap_or_default(),
-        MapFormat::Json => map.to_json(),
-        MapFormat::Csv => map.table().to_csv(),
+        Format::Table => Table { map: &map }.render().unwrap_or_default(),
+        Format::Json => map.to_json(),
+        Format::Csv => map.table().to_csv(),
     })?;
     strain
 }
@@ -168,7 +158,7 @@ fn along_path(model: &Model, arguments: &SolveArguments) -> Result<(), CliError>
     let (Some(&last), Some((&first, others))) = (depths.last(), laterals.split_first()) else {
         refuse!("--path needs a depth and a lateral position");
     };
-    if arguments.format == MapFormat::Json {
+    if arguments.format == Format::Json {
         refuse!("--path prints no map; give --format table or csv");
     }
     let down = depths.iter().map(|&depth| (depth, first));
@@ -184,7 +174,7 @@ fn along_path(model: &Model, arguments: &SolveArguments) -> Result<(), CliError>
     }
     print(&match arguments.format {
         // Writing to a String does not fail.
-        MapFormat::Table => PathTable { path: &path }.render().unwrap_or_default(),
+        Format::Table => PathTable { path: &path }.render().unwrap_or_default(),
         _ => {
             let row = |of: &PoseSolution| {
                 let (pose, force) = (of.pose, of.force);

@@ -46,7 +46,7 @@ pub struct WatchArguments {
     /// Prior probability of an inclusion
     #[arg(long, value_name = "P", value_parser = probability, allow_hyphen_values = true, default_value = "0.5")]
     prior_h1: f64,
-    /// Rate of false answers "inclusion", however often you look
+    /// Highest rate of false answers "inclusion", however often you look
     #[arg(long, value_name = "A", value_parser = probability, allow_hyphen_values = true, default_value = "0.01")]
     max_false_alarm: f64,
     /// Rate of false answers "no inclusion", for an inclusion at any place of the bank
@@ -55,7 +55,7 @@ pub struct WatchArguments {
     /// Least time between two answers in ms; a new decision and the last answer are always written
     #[arg(long, value_name = "N", default_value_t = 0)]
     every_ms: u64,
-    /// Writes a figure as SVG when the sweep is over: what it has told of each place of the bank
+    /// Writes a figure as SVG when the sweep is over: which inclusions of the bank are open, excluded or not covered
     #[arg(long, value_name = "FILE.svg", value_parser = svg_file())]
     figure: Option<PathBuf>,
     #[command(flatten)]

@@ -17,8 +17,8 @@ use rayon::prelude::*;
 
 use crate::classes::{ForceMap, Phantom};
 use crate::convert::{
-    Any, Names, array, finite_forces, give_reasons, html, in_unit, lengths, list, pair, python,
-    refused, remade, si, tell,
+    Any, Names, array, finite_forces, give_reasons, html, in_unit, lengths, list, on_all, pair,
+    python, refused, remade, si, tell,
 };
 use crate::map::axes;
 
@@ -84,7 +84,7 @@ impl Bank {
         let usual = GelUncertainty::default();
         let reference = self.bank.reference();
         let depths = GelChanges::depths_along(reference, passes);
-        let own = GelChanges::new(reference, &depths, &usual);
+        let own = on_all(|| GelChanges::new(reference, &depths, &usual))?;
         Ok(own.map_err(refused)?.map(Cow::Owned))
     }
 
@@ -94,7 +94,8 @@ impl Bank {
             return Ok(known.as_ref());
         }
         let (reference, depth) = (self.bank.reference(), self.bank.depth());
-        let found = GelChanges::new(reference, &[depth], &GelUncertainty::default());
+        let usual = GelUncertainty::default();
+        let found = on_all(|| GelChanges::new(reference, &[depth], &usual))?;
         let found = found.map_err(refused)?;
         Ok(self.changes.get_or_init(|| found).as_ref())
     }
@@ -110,7 +111,8 @@ fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
     for (number, few) in (0..).zip(solves.chunks(rayon::current_num_threads())) {
         let found = few.par_iter().zip(&mut last);
         let found = found.map(|(solve, last)| plan.solve(solve, last));
-        let found: Vec<_> = found.collect::<Result<_, FemError>>().map_err(refused)?;
+        let found: Result<Vec<_>, FemError> = on_all(|| found.collect())?;
+        let found = found.map_err(refused)?;
         maps.extend(found.into_iter().flatten());
         tell(
             progress,
@@ -166,13 +168,18 @@ fn record(
     record.map_err(refused)
 }
 
-/// Those of `all` that the `names` under a key of Python name.
+/// Those of `all` that the `names` under a key of Python name; "all" and "none" name them too.
 pub fn chosen<T: Copy + ToString>(
     key: &str,
     names: Vec<String>,
     all: impl IntoIterator<Item = T>,
 ) -> PyResult<Vec<T>> {
     let all: Vec<(String, T)> = all.into_iter().map(|of| (of.to_string(), of)).collect();
+    match &names[..] {
+        [name] if name == "all" => return Ok(all.into_iter().map(|(_, of)| of).collect()),
+        [name] if name == "none" => return Ok(Vec::new()),
+        _ => {}
+    }
     let of_name = |name: String| {
         let found = all.iter().find(|(known, _)| *known == name);
         let known: Vec<_> = all.iter().map(|(known, _)| &known[..]).collect();

@@ -46,6 +46,10 @@ pub fn calibrate<'py>(
     let contact = contact_mm
         .map(|contact| si("contact_mm", contact, -3))
         .transpose()?;
+    let is_of_gel = !layers.is_empty() || lateral != 0.0;
+    if phantom.is_none() && is_of_gel {
+        return Err(refused("layers and lateral_mm need a phantom"));
+    }
     let own = phantom.map(|phantom| phantom.0.clone());
     let (rows, calibrated) = interruptible(py, move || {
         let indentation = Indentation {

@@ -3,6 +3,7 @@
 use std::ffi::CString;
 use std::fmt::Display;
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::Builder;
 use std::time::Duration;
 
@@ -17,6 +18,7 @@ use pyo3::PyClass;
 use pyo3::exceptions::{PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyList, PyTuple};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use serde::Serialize;
 
 pyo3::create_exception!(
@@ -41,7 +43,10 @@ pub type Any<'a, 'py> = &'a Bound<'py, PyAny>;
 /// Implements: PYT-005.
 pub fn refused(reason: impl Display) -> PyErr {
     let reason = one_line(&reason.to_string());
-    Refused::new_err(reason.replace(", or use --trim", ""))
+    let reason = reason
+        .replace(", or use --trim", "")
+        .replace(" (--noise-sd-n)", "");
+    Refused::new_err(reason)
 }
 
 /// `value` times 10^`power`, as if its shortest decimal were read.
@@ -136,7 +141,8 @@ pub fn channels<'py, S: AsRef<[f64]>>(
     let force = force.as_ref().map(AsRef::as_ref);
     let shape = [2, force.normal.len()];
     // No lateral ones: normal forces alone.
-    let shape = &shape[usize::from(force.lateral.is_empty())..];
+    let is_normal_alone = force.lateral.is_empty() && !force.normal.is_empty();
+    let shape = &shape[usize::from(is_normal_alone)..];
     array(py, shape, force.into_array().concat())
 }
 
@@ -475,6 +481,26 @@ pub fn interruptible<T: Send + 'static>(
             },
         }
     }
+}
+
+/// What `work` gives, whose loops run on all processors. A process that was forked has threads of its own: those of its parent are not there.
+///
+/// Implements: PYT-010.
+pub fn on_all<T: Send>(work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    static THREADS: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+    let own = std::process::id();
+    let mut known = THREADS.lock().unwrap_or_else(PoisonError::into_inner);
+    let threads = match &*known {
+        Some((process, threads)) if *process == own => threads.clone(),
+        _ => {
+            let threads = Arc::new(ThreadPoolBuilder::new().build().map_err(refused)?);
+            // The end of the parent's would wait for its threads.
+            std::mem::forget(known.replace((own, threads.clone())));
+            threads
+        }
+    };
+    drop(known);
+    Ok(threads.install(work))
 }
 
 /// How pickle and copy make an object again: by the function `maker` of its class from a text.

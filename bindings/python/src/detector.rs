@@ -14,8 +14,8 @@ use rayon::prelude::*;
 
 use crate::batch;
 use crate::convert::{
-    Any, Records, array, floats, halves, interruptible, json, of_record, pair, python, refused,
-    tell, vector, wrong_shape,
+    Any, Records, array, floats, halves, interruptible, json, of_record, on_all, pair, python,
+    refused, si, tell, vector, wrong_shape,
 };
 use crate::oracle::asked;
 
@@ -79,7 +79,7 @@ pub fn theta<'py>(
         None => theta_of_record(halves(values), f0, f1, noise_sd)
             .map(|found| vec![found.theta])
             .map_err(|error| (None, error)),
-        Some(_) => py.detach(|| batch::theta(values, f0, f1, noise_sd)),
+        Some(_) => py.detach(|| on_all(|| batch::theta(values, f0, f1, noise_sd)))?,
     };
     let found = found.map_err(|(number, error)| of_record(number, error))?;
     observed.answer(py, &[], found)
@@ -114,8 +114,10 @@ impl From<detect::Statistic> for Statistic {
 #[pymethods]
 impl Statistic {
     #[new]
-    fn new(theta: f64, y_n: [f64; 2], gamma: f64) -> Statistic {
-        Statistic { theta, y_n, gamma }
+    fn new(theta: f64, y_n: [f64; 2], gamma: f64) -> PyResult<Statistic> {
+        let y_n = [si("y_n[0]", y_n[0], 0)?, si("y_n[1]", y_n[1], 0)?];
+        let (theta, gamma) = (si("theta", theta, 0)?, si("gamma", gamma, 0)?);
+        Ok(Statistic { theta, y_n, gamma })
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (f64, [f64; 2], f64)) {
@@ -237,7 +239,7 @@ impl MatchedFilter {
             Err(error) => Err(of_record(count.map(|_| number), error)),
         };
         let records = values.par_chunks_exact(2 * filter.samples()).enumerate();
-        let found: PyResult<Vec<f64>> = py.detach(|| records.map(theta).collect());
+        let found: PyResult<Vec<f64>> = py.detach(|| on_all(|| records.map(theta).collect()))?;
         residual.answer(py, &[], found?)
     }
 }
@@ -394,13 +396,10 @@ pub fn scan<'py>(
         scan.theta(halves(record), 0, theta)?;
         scan.maximum(halves(record), scan.full_shifts())
     };
-    let found = py.detach(|| {
-        let all = records.zip(theta.par_chunks_exact_mut(shifts)).enumerate();
-        let all = all.map(|(number, one)| {
-            of_one(one).map_err(|error| of_record(count.map(|_| number), error))
-        });
-        all.collect::<PyResult<Vec<ScanMaximum>>>()
-    })?;
+    let all = records.zip(theta.par_chunks_exact_mut(shifts)).enumerate();
+    let all = all
+        .map(|(number, one)| of_one(one).map_err(|error| of_record(count.map(|_| number), error)));
+    let found = py.detach(|| on_all(|| all.collect::<PyResult<Vec<ScanMaximum>>>()))??;
     let answer = PyDict::new(py);
     let each = |of: fn(&ScanMaximum) -> f64| found.iter().map(of).collect::<Vec<f64>>();
     let set = |key, values| answer.set_item(key, residual.answer(py, &[], values)?);
@@ -454,11 +453,10 @@ pub fn simulate_theta<'py>(
     // A few at a time, so that this thread hears of Ctrl-C.
     let few = (FEW / length.max(1)).max(1);
     for (number, theta) in theta.chunks_mut(few).enumerate() {
-        let done: Result<(), DetectError> = py.detach(|| {
-            let places = theta.par_iter_mut().enumerate();
-            let places = places.map(|(at, theta)| (number * few + at, theta));
-            places.try_for_each_init(|| vec![0.0; length], trial)
-        });
+        let places = theta.par_iter_mut().enumerate();
+        let places = places.map(|(at, theta)| (number * few + at, theta));
+        let simulate = || places.try_for_each_init(|| vec![0.0; length], trial);
+        let done: Result<(), DetectError> = py.detach(|| on_all(simulate))?;
         done.map_err(|error| of_record(None, error))?;
         tell(None, trials, trials)?;
     }

@@ -17,8 +17,8 @@ use toml::Table;
 
 use crate::classes::{ForceMap, Phantom};
 use crate::convert::{
-    Any, array, axis, broadcast, doubt_metres, floats, html, in_unit, interruptible, json, python,
-    refused, remade, scaled, si, tell,
+    Any, array, axis, broadcast, doubt_metres, floats, html, in_unit, interruptible, json, on_all,
+    python, refused, remade, scaled, si, tell,
 };
 
 /// The contact law of a name.
@@ -45,11 +45,11 @@ pub struct ProbeForce {
 #[pymethods]
 impl ProbeForce {
     #[new]
-    fn new(lateral_n: f64, normal_n: f64) -> ProbeForce {
-        ProbeForce {
-            lateral_n,
-            normal_n,
-        }
+    fn new(lateral_n: f64, normal_n: f64) -> PyResult<ProbeForce> {
+        Ok(ProbeForce {
+            lateral_n: si("lateral_n", lateral_n, 0)?,
+            normal_n: si("normal_n", normal_n, 0)?,
+        })
     }
 
     fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
@@ -126,7 +126,7 @@ fn solved(py: Python<'_>, model: Arc<Model>, poses: &[Pose]) -> PyResult<Vec<For
         let (model, few) = (model.clone(), few.to_vec());
         forces.extend(interruptible(py, move || {
             let found = few.par_iter().map(|&pose| Ok(model.solve(pose)?.force));
-            let found: Result<Vec<_>, FemError> = found.collect();
+            let found: Result<Vec<_>, FemError> = on_all(|| found.collect())?;
             found.map_err(refused)
         })?);
     }
@@ -185,6 +185,11 @@ impl Phantom {
         let Some(edits) = edits else {
             return Ok(Phantom(self.0.clone()));
         };
+        for (keyword, value) in edits {
+            if let Ok(number) = value.extract::<f64>() {
+                si(&keyword.to_string(), number, 0)?;
+            }
+        }
         let edits: Table = serde_json::from_str(&json(edits)?).map_err(refused)?;
         let keyed = edits
             .iter()

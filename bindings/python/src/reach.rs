@@ -127,8 +127,11 @@ fn smallest(bank: &palpate::bank::Bank, reached: &[Reached], needed: f64) -> Vec
         let found = smallest_diameters(bank, reached, needed);
         let modulus = in_unit(reached[0].modulus, -3);
         let row = |(depth, found): (&f64, Option<f64>)| {
-            let found = found.map(|diameter| in_unit(diameter, 3));
-            json!({"depth_mm": in_unit(*depth, 3), "youngs_modulus_kpa": modulus, "smallest_diameter_mm": found})
+            json!({
+                "depth_mm": in_unit(*depth, 3), "youngs_modulus_kpa": modulus,
+                "smallest_diameter_mm": found.map(|diameter| in_unit(diameter, 3)),
+                "is_beyond_bank": found.is_some_and(|diameter| diameter <= diameters[0]),
+            })
         };
         depths.iter().zip(found).map(row).collect::<Vec<_>>()
     };

@@ -105,6 +105,8 @@ def test_an_inclusion_is_judged_whatever_the_gel_does(bank):
     found = bank.judge(x, noisy(disc), noise_sd_n=0.02, known=["gel", "support", "smooth"])
     assert found["inclusion"] is True and found["model"] == "robust", found
     assert found["position"]["interval"][0] < 0 < found["position"]["interval"][1]
+    assert bank.judge(x, noisy(disc), noise_sd_n=0.02, known="all")["inclusion"] is True
+    assert bank.judge(x, noisy(disc), noise_sd_n=0.02, known="none") == bank.judge(x, noisy(disc), noise_sd_n=0.02)
     # A sensor of one force.
     one = bank.judge(x, noisy(disc)[1], noise_sd_n=0.02, known=["gel", "support", "smooth"])
     assert one["inclusion"] is True and one["noise_sd_lateral_n"] is None, one

@@ -41,5 +41,8 @@ def test_a_curve_that_begins_in_the_gel_says_what_to_do():
 def test_what_is_no_curve_is_refused():
     with pytest.raises(palpate.Refused, match="^curve: the probe does not move into the gel; give a curve into the gel, on which the depth grows$"):
         palpate.calibrate(np.zeros(30), np.zeros(30))
+    for options in ({"layers": [0]}, {"lateral_mm": 3}):
+        with pytest.raises(palpate.Refused, match="^layers and lateral_mm need a phantom$"):
+            palpate.calibrate(*curve(1, 1.5), **options)
     with pytest.raises(palpate.Refused, match="layer = 9, but must be below 2"):
         palpate.calibrate(*curve(1, 1.5), phantom=palpate.Phantom("none"), layers=[9], mesh_mm=2)

@@ -145,6 +145,11 @@ def test_no_number_that_is_not_finite_passes(wrong):
         palpate.simulate_theta(f0, f1, wrong, True, 10)
 
 
+    for call in (lambda: palpate.Statistic(wrong, [0, 0], 1), lambda: palpate.Statistic(0, [0, wrong], 1), lambda: palpate.ProbeForce(0, wrong)):
+        with pytest.raises(palpate.Refused, match="finite"):
+            call()
+
+
 def test_shapes_that_do_not_fit_are_refused():
     observed, f0, f1 = records(3, 41)
     for arguments in (
@@ -213,6 +218,20 @@ def test_records_with_and_without_inclusion_have_noise_of_their_own():
     assert abs(np.corrcoef(without, with_inclusion)[0, 1]) < 5 / math.sqrt(20_000)
     again = palpate.simulate_theta(f0, f1, 0.6, False, 20_000, seed=7)
     assert (again == without).all() and not np.isin(without, with_inclusion).any()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not fork")
+def test_a_forked_process_has_threads_of_its_own():
+    program = """
+import multiprocessing, numpy, palpate
+f0 = numpy.ones((2, 41))
+records = numpy.tile(f0, (5000, 1, 1))
+def ask(_):
+    return palpate.theta(records, f0, f0 + 0.01, 0.3).tobytes()
+own = ask(0)
+assert multiprocessing.get_context("fork").Pool(2).map(ask, range(4)) == [own] * 4
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
 
 
 def test_the_number_of_threads_changes_nothing():

@@ -97,7 +97,7 @@ def test_keywords_change_numbers(phantom):
         ({"colour": "red"}, "colour"),
         ({"probe_radius_mm": "5"}, "probe.radius_mm"),
         ({"probe_radius_mm": -5}, "probe.radius_mm = -5"),
-        ({"probe_radius_mm": math.nan}, "not JSON compliant"),
+        ({"probe_radius_mm": math.nan}, "probe_radius_mm = NaN, but must be a finite number"),
         ({"inclusion_depth_mm": None}, ""),
         ({"inclusion_depth_mm": 30}, "inclusion[0].depth_mm = 30"),
     ]:
@@ -179,6 +179,7 @@ def test_forces_between_and_beyond_the_poses(force_map):
     assert force_map.lateral_n.shape == (3, 5)
     assert np.array_equal(force_map.row(2), [force_map.lateral_n[1], force_map.normal_n[1]])
     assert np.array_equal(force_map.sweep(2, force_map.laterals_mm), force_map.row(2))
+    assert force_map.sweep(2, []).shape == (2, 0)
     assert np.allclose(force_map.sweep(3, [1.5])[:, 0], np.mean([force_map.row(d)[:, c] for d in (2, 4) for c in (2, 3)], axis=0))
     table = dict(depths_m=[0.001, 0.002, 0.004], laterals_m=[-0.006, -0.003, 0.0, 0.003, 0.006])
     depth, lateral = np.array([[1.0], [1.7], [4.0]]), np.array([-6.0, -2.5, 1.25, 6.0])

@@ -43,6 +43,7 @@ def test_gamma_and_limits_are_those_of_least_squares(bank):
             gammas = [of["gamma"][number] for of in answer["largest_depths"]]
             assert row["depth_mm"] == DEPTHS[number] and row["youngs_modulus_kpa"] == 1200
             expected = 4.0 if gammas[0] >= needed else np.interp(np.log(needed), np.log(gammas), DIAMETERS) if gammas[1] >= needed else None
+            assert row["is_beyond_bank"] == (gammas[0] >= needed)
             assert row["smallest_diameter_mm"] == (expected and pytest.approx(expected, rel=1e-9))
     kinds = set()
     for gammas, depth, beyond in answers:

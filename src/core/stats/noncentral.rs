@@ -404,7 +404,8 @@ fn log_poisson(b: f64, y: f64) -> f64 {
 }
 
 fn check_not_negative(x: f64) -> Result<f64, NumericError> {
-    within(0.0..=1e152, "x", x, "from 0 to 1e152")
+    // −0 is 0, of which there is a logarithm.
+    within(0.0..=1e152, "x", x, "from 0 to 1e152").map(|x| x + 0.0)
 }
 
 fn check_degrees(what: &'static str, degrees: f64) -> Result<f64, NumericError> {

@@ -16,12 +16,15 @@ pub struct PlaceBound {
     pub sd: [Option<f64>; 4],
     /// With all others known.
     pub alone: [Option<f64>; 4],
+    /// Whether a record tells places apart that are nearer than the nodes of the posterior (BNK-040), so that its intervals hold the true
+    /// value less often than they state.
+    pub is_finer_than_nodes: bool,
 }
 
 impl BankDetector {
     /// The bound at the parameters `at`, beside the nuisances of this detector, in noise of a known level.
     ///
-    /// Implements: BNK-050.
+    /// Implements: BNK-050, CLI-146.
     pub fn bound(&self, at: [f64; 4]) -> PlaceBound {
         let axes = &self.cells().axes;
         let slopes = [0, 1, 2, 3].map(|axis: usize| {
@@ -48,9 +51,16 @@ impl BankDetector {
             let left = space.project(&mut slope);
             (left > 0.0).then(|| 1.0 / left)
         };
+        let alone = [0, 1, 2, 3].map(|axis| bound(axis, false));
+        let is_finer = |axis: usize| {
+            let along = &axes[axis];
+            let apart = along.size(along.cell(at[axis])) / along.nodes as f64;
+            alone[axis].is_some_and(|sd| sd < apart)
+        };
         PlaceBound {
             sd: [0, 1, 2, 3].map(|axis| bound(axis, true)),
-            alone: [0, 1, 2, 3].map(|axis| bound(axis, false)),
+            alone,
+            is_finer_than_nodes: (0..4).any(is_finer),
         }
     }
 }

@@ -199,7 +199,11 @@ impl Model {
             let mut image = self.column(&[pose.depth], -pose.lateral)?;
             return Ok(image.swap_remove(0).mirrored());
         }
-        Ok(self.column(&[pose.depth], pose.lateral)?.swap_remove(0))
+        let mut solution = self.column(&[pose.depth], pose.lateral)?.swap_remove(0);
+        if self.mesh.symmetric && self.finite.is_none() && pose.lateral == 0.0 {
+            solution.force.lateral = 0.0;
+        }
+        Ok(solution)
     }
 
     /// Leads the contact from a solved pose down to `pose`, in steps that halve where they fail.

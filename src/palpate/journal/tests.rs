@@ -477,3 +477,15 @@ fn what_was_finished_for_another_request_is_refused_and_stays() {
         assert_eq!(disk.borrow().seen, format!("{other}1\n").as_bytes());
     }
 }
+
+// What is written to a device is not there when it is opened again, and a pipe would be read for ever.
+// Verifies: CLI-157.
+#[cfg(unix)]
+#[test]
+fn a_journal_is_a_file() {
+    let opened = Journal::open("/dev/null".into(), &1, "job", |_| Ok(()));
+    assert_error(
+        opened,
+        "/dev/null: is no journal of 'job'; choose another file",
+    );
+}

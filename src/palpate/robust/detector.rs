@@ -18,7 +18,7 @@ use crate::trace::contact::wrong_level;
 use crate::trace::{Cause, MUCH_LIKELIER, is_none, refused};
 
 /// A record that fits a class and hypothesis is farther from its mean with this probability.
-const MISFIT_RATE: f64 = 1e-5;
+pub const MISFIT_RATE: f64 = 1e-5;
 /// The largest magnitude of a force, N: fourth powers of such, and their sums, are far from overflow.
 ///
 /// Implements: ROB-008.
@@ -150,7 +150,8 @@ impl<'a> RobustDetector<'a> {
             answer.causes.push(Cause::Misfit);
             return Ok(answer);
         };
-        self.conclude(&found, &factors, &mut answer)?;
+        let is_noisier = cleaned.iter().any(|of| of.is_noisier);
+        self.conclude(&found, &factors, is_noisier, &mut answer)?;
         if has_lateral {
             answer.is_none_doubtful = favours_one || is_likelier_turned;
             let is_contradicted = match answer.decision {
@@ -292,6 +293,7 @@ impl<'a> RobustDetector<'a> {
         &self,
         found: &Evidence,
         factors: &[Cholesky<f64, Dyn>],
+        is_noisier: bool,
         answer: &mut RobustAnswer,
     ) -> Result<(), Refusal> {
         let question = &self.question;
@@ -306,7 +308,7 @@ impl<'a> RobustDetector<'a> {
         answer.rates = self.rates(factors, answer)?;
         let degrees = self.counted.len() as f64 - 2.0 * self.sweeps.len() as f64;
         let tail = chi_square(found.distance, degrees, 0.0);
-        if tail.map_err(refused)?.upper < MISFIT_RATE {
+        if is_noisier || tail.map_err(refused)?.upper < MISFIT_RATE {
             answer.causes.push(Cause::Misfit);
             return Ok(());
         }

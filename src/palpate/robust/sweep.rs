@@ -3,6 +3,7 @@
 use nalgebra::DVector;
 
 use super::classes::Undisturbed;
+use super::detector::MISFIT_RATE;
 use super::gates;
 use super::gel::{GelChange, GelUncertainty};
 use super::modes::{Modes, Spectrum, along};
@@ -10,6 +11,7 @@ use super::{RobustQuestion, RobustSweep, channels, expected};
 use crate::force::Force;
 use crate::force_map::{ForceMap, ForceTable};
 use crate::refusal::Refusal;
+use crate::stats::noncentral::chi_square;
 use crate::trace::contact::{RADIUS, in_air, is_narrow, level, radius, wrong_level};
 use crate::trace::design::{difference, slope};
 use crate::trace::{Cause, LEAST_SAMPLES, Record};
@@ -37,6 +39,16 @@ pub struct PreparedSweep {
 /// The noise of the lateral force, over that of the normal force, below which it is in another unit, or comes from no sensor.
 const QUIET: f64 = 0.02;
 
+/// The variance of the noise is at most so many times the one that is stated.
+const MOST_OF_STATED: f64 = 2.0;
+
+/// Whether the squares that the modes leave of the lateral forces are next to nothing beside those of the normal ones.
+///
+/// Implements: ROB-009.
+fn is_quiet(left: Force<f64>) -> bool {
+    left.lateral < QUIET * QUIET * left.normal
+}
+
 /// A record without its glitches.
 #[derive(Clone)]
 pub struct Cleaned {
@@ -47,6 +59,8 @@ pub struct Cleaned {
     pub noise: Force<Spectrum>,
     /// Samples that were replaced.
     pub glitches: usize,
+    /// Whether there is more noise than was stated.
+    pub is_noisier: bool,
 }
 
 impl Cleaned {
@@ -316,7 +330,8 @@ impl PreparedSweep {
         let (lateral, normal) = (lateral?, normal?);
         let glitches = lateral.1 + normal.1;
         let forces = Force::new(lateral.0, normal.0);
-        if self.has_lateral && self.is_quiet(&forces) {
+        let left = (forces.as_ref()).map(|of| modes.residual(of).iter().map(|r| r * r).sum());
+        if self.has_lateral && is_quiet(left) {
             let level = wrong_level(self.level(question, &forces.normal));
             let unit = level.filter(|&of| of == Cause::ForceUnit);
             return Err(unit.unwrap_or(Cause::Channels));
@@ -333,16 +348,24 @@ impl PreparedSweep {
             forces,
             noise,
             glitches,
+            is_noisier: stated.is_some() && self.is_noisier(left, least, level),
         })
     }
 
-    /// Whether what the modes leave of the lateral forces is next to nothing beside what they leave of the normal ones.
+    /// Whether the squares that the modes leave of a channel are more than noise of a variance and errors of the depths would leave.
     ///
-    /// Implements: ROB-009.
-    fn is_quiet(&self, forces: &Force<Vec<f64>>) -> bool {
-        let left = forces.as_ref().map(|channel| self.modes.residual(channel));
-        let squares = left.map(|left| left.iter().map(|force| force * force).sum::<f64>());
-        squares.lateral < QUIET * QUIET * squares.normal
+    /// Implements: ROB-040.
+    fn is_noisier(&self, left: Force<f64>, variance: Force<f64>, level: f64) -> bool {
+        let degrees = (self.modes.samples() - self.modes.count()) as f64;
+        let depth_noise = channels(&self.undisturbed.depth_noise);
+        let of_depths = depth_noise.map(|sd| sd.iter().fold(0.0, |most, sd| sd.abs().max(most)));
+        let more = |((left, variance), sd): ((f64, f64), f64)| {
+            let most = MOST_OF_STATED * (variance + level * level * sd * sd);
+            // NaN and infinity are more.
+            chi_square(left / most, degrees, 0.0).map_or(true, |tail| tail.upper < MISFIT_RATE)
+        };
+        let more = left.zip(variance).zip(of_depths).map(more);
+        more.normal || self.has_lateral && more.lateral
     }
 
     /// What uneven depths add to the forces of a record of some level, N: nothing if there are none.

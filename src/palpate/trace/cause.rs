@@ -46,12 +46,12 @@ impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Cause::Sign => "the forces have the opposite sign to those of the maps: reverse it; a normal force that pushes the probe up is positive",
-            Cause::ForceUnit => "the forces are in another unit than was said, such as mN, or the depth is, such as m: say which, or give N and mm",
+            Cause::ForceUnit => "the forces or the depth are not in the stated unit: state the right one, such as mN or m, or give N and mm",
             Cause::Level => "the forces are too large for the maps' gel at this depth: take maps of this gel, depth and probe",
-            Cause::Misfit => "the noise is not as it was stated, or the forces are not those of the maps: state the noise of a sample in N, take less as known, or take other maps",
+            Cause::Misfit => "no hypothesis explains the forces, or the noise is not as stated: state the noise of a sample in N, take less as known, or take other maps",
             Cause::Coloured => "the noise of neighbouring samples is correlated, and the exact model needs white noise: use the robust model",
-            Cause::Saturated => "the sensor was at the end of its range, where many samples are: use one with a larger range",
-            Cause::Glitches => "too many samples are far from those beside them: check the cable, or leave them out",
+            Cause::Saturated => "many samples are at the end of the sensor's range: use a sensor with a larger range",
+            Cause::Glitches => "too many samples are far from their neighbours: check the cable, or leave those samples out",
             Cause::NoContact => "the forces are too small for the maps' gel at this depth: check that the probe touches, or say that the sensor was set to zero on the gel",
             Cause::InAir => "samples at the start or at the end are in air: leave them out",
             Cause::Narrow => "the sweep is shorter than half the radius of the probe: check the unit of the positions, or make a longer sweep",

@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use crate::CliError;
 use crate::error::refuse;
 use crate::layout::LayoutArguments;
 use crate::numbers::{length_or_zero, newtons, position, probability, sure_probability, velocity};
 use crate::output::{note, svg_file};
+use crate::{CliError, Format};
 use palpate::csv::Layout;
 use palpate::force::Force;
 use palpate::robust::Part;
@@ -33,34 +33,24 @@ pub struct DetectArguments {
     #[command(flatten)]
     pub(super) criterion: CriterionArguments,
     /// Output format
-    #[arg(long, value_enum, default_value_t = AnswerFormat::Table)]
-    pub(super) format: AnswerFormat,
-}
-
-/// The format of an answer, or of many.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum AnswerFormat {
-    /// For people; one line for each of several records.
-    Table,
-    /// For programs; keys carry the unit. One line for each of several records.
-    Json,
-    /// One line for each record.
-    Csv,
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    pub(super) format: Format,
 }
 
 /// What the record may hold beside an inclusion.
 #[derive(Debug, Args)]
 pub(super) struct ModelArguments {
-    /// What the record may hold beside noise and an inclusion
+    /// What may affect the record apart from noise and an inclusion
     #[arg(long, value_enum, default_value_t = ModelName::Robust)]
     pub model: ModelName,
-    /// Posterior probability from which an inclusion is reported; none is reported up to 1 minus this [default: 0.95]
+    /// Posterior probability for the answer "inclusion"; "no inclusion" needs at most 1 minus this [default: 0.95]
     #[arg(long, value_name = "P", value_parser = sure_probability, allow_hyphen_values = true)]
     pub sure: Option<f64>,
-    /// The sensor was set to zero on the gel, so that the forces say nothing of contact
+    /// The sensor was set to zero on the gel, so the forces cannot show whether the probe touches it; the answer is then never "no
+    /// inclusion"
     #[arg(long)]
     pub zeroed: bool,
-    /// Takes all traces for sweeps of one place
+    /// Judges all traces together, as sweeps over the same place
     #[arg(long)]
     pub together: bool,
     /// A sweep of the same gel over a place without an inclusion, at the first --depth-mm; may be given several times
@@ -149,13 +139,13 @@ pub(super) struct Sweep {
 /// What is known of the sensor and of its noise.
 #[derive(Debug, Args)]
 pub(super) struct NoiseArguments {
-    /// What does not disturb the sweep: a list of smooth, gel, support, stage, surface, tilt, friction, relaxation and walk. With
-    /// --model exact what is not fitted: a list of offset, drift, gain, depth and variance (of the noise) [default: depth]. 'all' or
-    /// 'none' of them
+    /// Disturbances that cannot occur: a list of smooth, gel, support, stage, surface, tilt, friction, relaxation and walk. With --model
+    /// exact, quantities that are known and not fitted: a list of offset, drift, gain, depth and variance (of the noise) [default: depth].
+    /// Or 'all' or 'none'
     #[arg(long, value_name = "LIST")]
     known: Option<String>,
-    /// Correlation of the noise: auto (estimated from the record; --model exact refuses a record that has it), white (independent
-    /// samples), or a file with a sweep without contact, from which correlation and standard deviation are estimated
+    /// Correlation of the noise: auto (estimated from the record; --model exact does not judge a record with correlated noise), white
+    /// (independent samples), or a file with a sweep without contact, from which correlation and standard deviation are estimated
     #[arg(long, value_name = "auto|white|FILE", default_value = "auto")]
     pub noise: String,
     #[command(flatten)]

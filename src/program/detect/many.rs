@@ -10,11 +10,10 @@ use palpate::trace::Record;
 use rayon::prelude::*;
 use serde_json::Value;
 
-use super::arguments::AnswerFormat;
 use super::records::{Asked, Detector, tell_glitches};
 use crate::output::{Envelope, csv_line, files_in, note, print};
 use crate::progress::bar;
-use crate::{CliError, error::refuse};
+use crate::{CliError, Format, error::refuse};
 
 /// The columns of the table of records in CSV.
 const HEADER: &str = "trace,decision,posterior_h1,theta,false_alarm,miss,causes,error";
@@ -158,7 +157,7 @@ fn refused(file: &str, error: &impl Display) -> Answer {
 }
 
 /// Prints a line for each record, and errors; fails if one was not judged.
-fn tell(format: AnswerFormat, answers: Vec<Answer>) -> Result<(), CliError> {
+fn tell(format: Format, answers: Vec<Answer>) -> Result<(), CliError> {
     let field = |answer: &Answer, key: &str| text(answer.rows.get(key));
     for answer in &answers {
         tell_glitches(&field(answer, "trace"), answer.glitches);
@@ -167,12 +166,12 @@ fn tell(format: AnswerFormat, answers: Vec<Answer>) -> Result<(), CliError> {
         }
     }
     let lines: String = match format {
-        AnswerFormat::Table => table(&answers),
-        AnswerFormat::Csv => {
+        Format::Table => table(&answers),
+        Format::Csv => {
             let line = |answer| csv_line(HEADER.split(',').map(|key| field(answer, key)));
             format!("{HEADER}\n") + &answers.iter().map(line).collect::<String>()
         }
-        AnswerFormat::Json => {
+        Format::Json => {
             let line = |answer: &Answer| {
                 let answer = Envelope::new("palpate-detection", 4, &answer.rows);
                 serde_json::to_string(&answer).unwrap_or_default() + "\n"

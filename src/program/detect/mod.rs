@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 use anstyle::AnsiColor;
 use serde_json::json;
 
-use super::CliError;
 use super::error::refuse;
-use super::output::{Envelope, Format, marked, note, warn, write};
+use super::output::{Envelope, marked, note, warn, write};
+use super::CliError;
 pub use arguments::DetectArguments;
-use arguments::{AnswerFormat, Known, ModelName};
+use arguments::{Known, ModelName};
 use palpate::bank::{Bank, BankSearch};
 use palpate::chart::place_figure;
 use palpate::csv::Layout;
@@ -159,6 +159,10 @@ fn by_bank(
         simulations: files.simulations.map(|number| (number, files.seed)),
     };
     let found = search.locate(&record)?;
+    if found.bound.is_finer_than_nodes {
+        let text = "its steps are too large for so little noise, so the intervals hold the true values less often: compute a bank with smaller steps";
+        warnings.tell("coarse_bank", path.display(), text);
+    }
     if let Some(path) = &files.figure {
         write(path, &place_figure(&bank, &found.place)?)?;
     }
@@ -327,11 +331,7 @@ fn tell(
 ) -> Result<(), CliError> {
     let table = format!("{}\n\n{}", with_mark(decision, words), rows.table());
     let answer = Envelope::new("palpate-detection", 4, rows);
-    let format = match arguments.format {
-        AnswerFormat::Json => Format::Json,
-        _ => Format::Table,
-    };
-    format.print(&answer, || table)?;
+    arguments.format.print(&answer, || table)?;
     if decision.is_none() {
         // A reference sweep can be the one at fault.
         let references = &arguments.model.reference_sweeps;

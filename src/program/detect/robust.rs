@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use super::arguments::{AnswerFormat, ModelName};
+use super::arguments::ModelName;
 use super::records::{Asked, Between, tell_glitches};
 use super::{DetectArguments, TwoMaps, Warnings, many, tell};
-use crate::CliError;
 use crate::error::refuse;
 use crate::numbers::for_each;
 use crate::output::write;
+use crate::{CliError, Format};
 use palpate::bank::Bank;
 use palpate::chart::explanation_figure;
 use palpate::csv::Layout;
@@ -55,7 +55,7 @@ pub fn check_options(arguments: &DetectArguments) -> Result<(), CliError> {
     if arguments.traces.len() > 1 && model.model == ModelName::Exact {
         refuse!("--model exact judges one trace");
     }
-    let is_csv = arguments.format == AnswerFormat::Csv;
+    let is_csv = arguments.format == Format::Csv;
     if is_csv && (model.together || model.model == ModelName::Exact) {
         refuse!("--format csv is a table of records, without --together or --model exact");
     }
@@ -83,7 +83,7 @@ pub fn detect(arguments: &DetectArguments, layout: &Layout) -> Result<(), CliErr
         }
     };
     let traces = many::traces(&arguments.traces)?;
-    let is_csv = arguments.format == AnswerFormat::Csv;
+    let is_csv = arguments.format == Format::Csv;
     let is_alone = traces == arguments.traces && traces.len() == 1 && !is_csv;
     let is_one = arguments.model.together || is_alone;
     if !is_one && arguments.hypotheses.figure.is_some() {

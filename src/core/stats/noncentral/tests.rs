@@ -118,6 +118,22 @@ fn points_of_students_law() {
     assert_eq!(beyond, Err(NumericError::Overflow { what: "the point" }));
 }
 
+// Of 30 degrees of freedom and less, and of more, another series is summed.
+// Verifies: DET-005.
+#[test]
+fn a_zero_has_no_sign() {
+    for degrees in [3.0, 30.0, 40.0] {
+        for x in [0.0, -0.0] {
+            let all = [chi_square(x, degrees, 0.5), f_ratio(x, degrees, 37.0, 0.5)];
+            let none = Tails {
+                lower: 0.0,
+                upper: 1.0,
+            };
+            assert_eq!(all.map(Result::unwrap), [none; 2], "{x:?} {degrees}");
+        }
+    }
+}
+
 // Verifies: DET-005.
 #[test]
 fn what_has_no_answer_is_refused() {

@@ -170,10 +170,16 @@ fn estimates_spread_as_the_bound_says() {
     }
 }
 
-// Verifies: BNK-050.
+// The posterior has 20 nodes between two points of the bank. At a scale of 5 a record tells places a quarter of a step apart.
+// Verifies: BNK-050, CLI-146.
 #[test]
 fn the_bound_is_the_inverse_of_fishers_matrix() {
     let scale = 5.0;
+    for (scale, is_finer) in [(scale, false), (20.0 * scale, true)] {
+        let bound = detector(scale, true, NoiseLevel::Known).bound([0.4, 2.7, 1.0, 1.0]);
+        let least = bound.alone.into_iter().flatten().fold(f64::MAX, f64::min);
+        assert_eq!(bound.is_finer_than_nodes, is_finer, "{least}");
+    }
     for (has_offset, at) in [(false, [0.4, 2.7]), (true, [-2.6, 3.3])] {
         let detector = detector(scale, has_offset, NoiseLevel::Known);
         let bound = detector.bound([at[0], at[1], 1.0, 1.0]);

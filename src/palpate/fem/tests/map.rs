@@ -114,6 +114,12 @@ fn a_map_holds_the_forces_of_its_poses() {
     assert_of_its_poses(&map, &model);
     // The axis is solved as well, for the mirror images.
     assert_eq!(counted.get(), 12);
+    // A force that is the negative of itself.
+    for lateral in [0.0, -0.0] {
+        let depth = MILLIMETRES[0];
+        let on_axis = model.solve(Pose { depth, lateral }).unwrap();
+        assert_eq!(on_axis.force.lateral, 0.0);
+    }
     assert_eq!(model.solved_laterals(&laterals), [0.0, 1e-3, 3e-3, 7e-3]);
 }
 

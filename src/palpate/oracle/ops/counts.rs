@@ -61,7 +61,12 @@ pub fn analysis(
         let rate = right as f64 / (subjects as f64 * trials as f64);
         pooled.push(right);
         rates.push(rate);
-        gamma.push(gamma_from_two_afc(rate)?);
+        gamma.push(gamma_from_two_afc(rate).map_err(|_| {
+            let found = format_args!(
+                "correct: the answers of condition {condition} are all right or all wrong; γ is not finite"
+            );
+            Refused::range(found)
+        })?);
         // A single subject has the pooled rate.
         let dispersion = dispersion(&column)?;
         chi2.push(dispersion.map_or(0.0, |found| found.chi_square));

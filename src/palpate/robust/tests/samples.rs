@@ -2,9 +2,11 @@
 
 use super::*;
 
-/// Forces over a flat gel: 1.5 N in the normal channel.
+/// Forces over a flat gel: 1.5 N in the normal channel at 4 mm.
 fn flat() -> ForceTable {
-    table_of(&[3e-3, 4e-3], &[-8e-3, 8e-3], |_, _| [0.0, 1.5])
+    table_of(&[3e-3, 4e-3], &[-8e-3, 8e-3], |depth, _| {
+        [0.0, 375.0 * depth]
+    })
 }
 
 /// The detector of a disc in records along `over`, at 4 mm or at their own depths.
@@ -47,6 +49,40 @@ fn few_samples_in_stated_noise_are_kept_but_for_a_glitch() {
                 normal[samples / 2] += 0.7;
                 assert_eq!(replaced(&normal), (false, vec![1]), "{samples} {trial}");
             }
+        }
+    }
+}
+
+// 16 modes leave 145 of 161 degrees of freedom. χ² is above 1.58 times its mean with a probability of 1e-5. Noise of 6.25 times the stated
+// variance is half of that, 3.12 times the mean, and missed with 1e-7; noise of 1.9 times is refused with 1e-6. An error of 0.1 mm of the
+// depth is one of 0.0375 N.
+// Verifies: ROB-040.
+#[test]
+fn more_noise_than_was_stated_is_a_misfit() {
+    let (over, depths) = (positions(161), [4e-3; 161]);
+    let record = Record::along("over", &over, &depths, Force::new(&over, &over)).unwrap();
+    for (stated, depth_sd, normal_sd, is_misfit) in [
+        (Force::new(0.008, 0.02), 0.0, 0.02, true),
+        (Force::new(0.02, 0.008), 0.0, 0.02, true),
+        (Force::new(0.02, 0.02), 0.0, 0.02, false),
+        (Force::new(0.0145, 0.0145), 0.0, 0.02, false),
+        (Force::new(0.02, 0.02), 0.0, 0.06, true),
+        (Force::new(0.02, 0.02), 1e-4, 0.0425, false),
+    ] {
+        let question = RobustQuestion {
+            noise_sd: Some(stated),
+            ..RobustQuestion::default()
+        };
+        let record = record.clone().with_depth_sd(depth_sd).unwrap();
+        let detector = detector(question, &record);
+        for trial in 0..100 {
+            let lateral = noise(161, 2 * trial).into_iter().map(|n| 0.02 * n);
+            let normal = noise(161, 2 * trial + 1).into_iter();
+            let normal: Vec<f64> = normal.map(|n| 1.5 + normal_sd * n).collect();
+            let lateral: Vec<f64> = lateral.collect();
+            let answer = detector.judge(&[Force::new(&lateral, &normal)]).unwrap();
+            let found = answer.causes.contains(&Cause::Misfit);
+            assert_eq!(found, is_misfit, "{stated:?} {depth_sd} {trial}");
         }
     }
 }
