@@ -88,7 +88,9 @@ pub fn watch(arguments: &WatchArguments) -> Result<(), CliError> {
     let (stop, lines) = (stop_on_signals()?, lines());
     while let Some(line) = next(&lines, &stop) {
         let line = line.map_err(CliError::refused("-: cannot be read"))?;
-        let Some(sample) = samples.sample(&line)? else {
+        let sample = samples.sample(&line)?;
+        (samples.notes.drain(..)).for_each(|text| output::note("-", &text));
+        let Some(sample) = sample else {
             continue;
         };
         let pushed = watcher.push(sample.position, sample.depth, sample.lateral, sample.normal);

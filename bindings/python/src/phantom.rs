@@ -265,7 +265,7 @@ impl Phantom {
         let model = interruptible(py, move || model(&phantom, mesh_mm, &contact))?;
         let forces = solved(py, Arc::new(model), &poses)?;
         if let ([], [force]) = (&shape[..], &forces[..]) {
-            let force = ProbeForce::new(force.lateral, force.normal);
+            let force = ProbeForce::new(force.lateral, force.normal)?;
             return Ok(Bound::new(py, force)?.into_any());
         }
         let lateral = forces.iter().map(|force| force.lateral);

@@ -93,6 +93,8 @@ const CONTACTS: u32 = 100;
 const EXPONENTS: [f64; 3] = [1.0, 1.5, 2.0];
 /// Steps towards an end of the contact's interval, from that of a normal law.
 const PROFILE_STEPS: usize = 8;
+/// A form of relaxation whose criterion is above the least by less than this may be the right one.
+const RIVAL: f64 = 6.0;
 /// Moduli are found where a further step changes each by less than this share, after at most so many steps.
 const SAME_MODULUS: f64 = 0.02;
 const MOST_ROUNDS: usize = 8;
@@ -110,6 +112,8 @@ pub struct Calibration<'a> {
     pub relaxation: Relaxation,
     known: Known,
     fit: Option<Fit>,
+    /// What else the force may relax by, and the fits of it.
+    rivals: Vec<(Relaxation, Fit)>,
     /// That of the contact, once it was asked for: it takes some fits.
     profile: OnceLock<Interval>,
 }
@@ -337,7 +341,7 @@ fn best<'a>(curve: &'a Curve, known: Known, elastic: Elastic, start: &[f64]) -> 
     } else {
         &[Relaxation::None]
     };
-    let mut found: Option<(f64, Relaxation, Fit)> = None;
+    let mut fits: Vec<(f64, Relaxation, Fit)> = Vec::new();
     for &relaxation in forms {
         let model = CurveModel {
             curve,
@@ -355,18 +359,24 @@ fn best<'a>(curve: &'a Curve, known: Known, elastic: Elastic, start: &[f64]) -> 
             let mut variances = (first..fit.parameters.len()).step_by(2);
             relaxation.is_seen(own, curve) && variances.all(|at| fit.covariance[(at, at)] < 1.0)
         };
-        if let Some(fit) = fit.filter(is_seen) {
-            let criterion = fit.criterion();
-            if found.as_ref().is_none_or(|(least, ..)| criterion < *least) {
-                found = Some((criterion, relaxation, fit));
-            }
-        }
+        fits.extend(
+            fit.filter(is_seen)
+                .map(|fit| (fit.criterion(), relaxation, fit)),
+        );
     }
-    let found = match found {
-        Some((_, relaxation, fit)) => (relaxation, Some(fit)),
+    fits.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let most = fits.first().map_or(0.0, |(least, ..)| least + RIVAL);
+    let near = fits
+        .into_iter()
+        .take_while(|(criterion, ..)| *criterion <= most);
+    let mut near = near.map(|(_, relaxation, fit)| (relaxation, fit));
+    let found = match near.next() {
+        Some((relaxation, fit)) => (relaxation, Some(fit)),
         None => (Relaxation::None, None),
     };
+    let rivals = near.collect();
     let mut found = Calibration::new(curve, known, elastic, found);
+    found.rivals = rivals;
     found.cause = found.why_not();
     found
 }
@@ -386,6 +396,7 @@ impl<'a> Calibration<'a> {
             relaxation,
             known,
             fit,
+            rivals: Vec::new(),
             profile: OnceLock::new(),
         }
     }
@@ -453,11 +464,15 @@ impl<'a> Calibration<'a> {
     }
 
     fn model(&self) -> CurveModel<'_> {
+        self.model_of(self.relaxation)
+    }
+
+    fn model_of(&self, relaxation: Relaxation) -> CurveModel<'_> {
         CurveModel {
             curve: self.curve,
             known: self.known,
             elastic: &self.elastic,
-            relaxation: self.relaxation,
+            relaxation,
         }
     }
 
@@ -505,6 +520,30 @@ impl<'a> Calibration<'a> {
         interval.transpose()
     }
 
+    /// A quantity that there is whatever the form of relaxation, with an interval that holds those of all forms that may be the right one.
+    ///
+    /// Implements: CAL-022.
+    fn whatever_form(&self, of: impl Fn(&Parts<'_>) -> f64) -> Result<Option<Interval>, Refusal> {
+        let Some(own) = self.interval(&of)? else {
+            return Ok(None);
+        };
+        self.beside_rivals(own, of).map(Some)
+    }
+
+    /// The interval of a quantity that holds those of the rivals too.
+    fn beside_rivals(
+        &self,
+        own: Interval,
+        of: impl Fn(&Parts<'_>) -> f64,
+    ) -> Result<Interval, Refusal> {
+        self.rivals.iter().try_fold(own, |found, (form, fit)| {
+            let model = self.model_of(*form);
+            let [low, high] = fit.interval(|at| of(&model.parts(at)))?.ends;
+            let ends = [found.ends[0].min(low), found.ends[1].max(high)];
+            Ok(Interval { ends, ..found })
+        })
+    }
+
     /// Where the probe touched the gel, m, on the depths of the curve; without an interval to speak of if it was known.
     ///
     /// # Errors
@@ -516,7 +555,9 @@ impl<'a> Calibration<'a> {
         };
         if self.profile.get().is_none() {
             let ends = self.profile_ends(normal, fit)?;
-            self.profile.get_or_init(|| Interval { ends, ..normal });
+            let own = Interval { ends, ..normal };
+            let found = self.beside_rivals(own, |parts| parts.contact)?;
+            self.profile.get_or_init(|| found);
         }
         Ok(self.profile.get().copied())
     }
@@ -557,7 +598,7 @@ impl<'a> Calibration<'a> {
     /// # Errors
     /// As [`Calibration::contact`].
     pub fn baseline(&self) -> Result<[Option<Interval>; 2], Refusal> {
-        let of = |at: usize| self.interval(|parts| parts.baseline[at]);
+        let of = |at: usize| self.whatever_form(|parts| parts.baseline[at]);
         Ok([of(0)?, of(1)?.filter(|_| !self.known.no_drift)])
     }
 
@@ -566,7 +607,8 @@ impl<'a> Calibration<'a> {
     /// # Errors
     /// As [`Calibration::contact`].
     pub fn law(&self) -> Result<Vec<Interval>, Refusal> {
-        let all = (0..self.elastic.parameters()).map(|at| self.interval(|parts| parts.elastic[at]));
+        let law = |at: usize| self.whatever_form(|parts| parts.elastic[at]);
+        let all = (0..self.elastic.parameters()).map(law);
         let all = all
             .collect::<Result<Option<Vec<_>>, _>>()?
             .unwrap_or_default();

@@ -369,6 +369,48 @@ fn the_relaxation_of_a_sphere_is_found_with_its_form() {
     assert_eq!(rows["held"][2]["seconds"], 10.0);
 }
 
+/// A curve that relaxes by a power law that one exponential nearly describes, in noise of 5 mN; from 0.8 mm on, with an offset of 0.12 N and
+/// a drift of −0.02 N.
+fn nearly_exponential(number: u64) -> Curve {
+    let times: Vec<f64> = (0..=292).map(|k| 0.025 * f64::from(k)).collect();
+    let depths: Vec<f64> = times.iter().map(|t| 2e-3 * t.min(2.3)).collect();
+    let elastic = |d: &f64| 0.15 * (1e3 * (d - 0.8e-3)).max(0.0).powf(1.6);
+    let elastic: Vec<f64> = depths.iter().map(elastic).collect();
+    let terms = Relaxation::PowerLaw.terms(&[0.0, libm::log(0.135)]);
+    let mut forces = relaxed(&terms, &times, &elastic);
+    let generator = Generator::new(47, number);
+    for (k, force) in forces.iter_mut().enumerate() {
+        *force += 0.12 - 0.02 * k as f64 / 292.0 + 5e-3 * generator.normal(0, k as u64);
+    }
+    Curve::new("held", Some(&times), &depths, &forces).unwrap()
+}
+
+/// Whether the intervals of contact, offset and drift hold them, in the curve of that number; and how many forms may be the right one.
+fn held_whatever_form(number: u64) -> ([bool; 3], usize) {
+    let curve = nearly_exponential(number);
+    let found = calibrate(&curve, ALONE).unwrap();
+    let [offset, drift] = found.baseline().unwrap().map(Option::unwrap);
+    let contact = found.contact().unwrap().unwrap();
+    let held = [(contact, 0.8e-3), (offset, 0.12), (drift, -0.02)];
+    (
+        held.map(|(of, truth)| holds(of, truth)),
+        1 + found.rivals.len(),
+    )
+}
+
+// Verifies: CAL-022, CAL-030. With the best form alone, 50 of 60 held the drift.
+#[test]
+#[ignore = "slow: run it with --release"]
+fn intervals_hold_what_they_state_whatever_form_is_taken() {
+    let all: Vec<_> = (0..300).into_par_iter().map(held_whatever_form).collect();
+    for (quantity, name) in ["contact", "offset", "drift"].into_iter().enumerate() {
+        let covered = all.iter().filter(|(held, _)| held[quantity]).count();
+        println!("{name}: {covered} of 300");
+        // Of 300 intervals that hold with 95 %, fewer than 272 hold with a probability of 5e-4.
+        assert!(covered >= 272, "{name}: {covered}");
+    }
+}
+
 // Verifies: CAL-030.
 #[test]
 fn no_interval_of_a_weight_reaches_below_zero() {

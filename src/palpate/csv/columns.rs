@@ -301,9 +301,15 @@ fn in_unit(names: &[Named], of: &str) -> Option<Named> {
     names.iter().find(same).copied()
 }
 
+/// What stands between the parts of a name. Other marks are a part of it: `Load (%)` is no force in N.
+const BETWEEN: &[char] = &[
+    ' ', '\t', '\n', '_', '-', '.', '/', '\\', ':', ',', ';', '(', ')', '[', ']', '{', '}', '"',
+    '\'',
+];
+
 /// The parts of a field of the header with `_` between them, in small letters, and the name in the unit behind them, if there is one.
 fn taken_apart(field: &str, names: &[Named]) -> (String, Option<Named>) {
-    let parts = field.split(|c: char| !c.is_alphanumeric());
+    let parts = field.split(BETWEEN);
     let mut parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
     let last = parts.last().filter(|_| parts.len() > 1);
     let named = last.and_then(|last| in_unit(names, last));
@@ -581,8 +587,12 @@ mod tests {
     #[test]
     fn what_may_mean_two_things_is_refused() {
         let mega = "no column normal_force_n or normal_force_mn in the header";
-        let header = ["pos (mm),Load (MN)", "pos (mm),normal_force_MN"];
-        for header in header {
+        for header in [
+            "pos (mm),Load (MN)",
+            "pos (mm),normal_force_MN",
+            "pos (mm),Load (%)",
+            "pos (mm),|F| (N)",
+        ] {
             let found = read(&format!("{header}\n1,-3\n"), "position=1").unwrap_err();
             assert!(found.contains(mega), "{header}: {found}");
         }

@@ -403,7 +403,12 @@ pub(crate) fn is_comment(line: &str) -> bool {
 pub fn header_and_rows(text: &str) -> ((usize, &str), impl Iterator<Item = (usize, &str)>) {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let is_said = |(_, line): &(usize, &str)| !is_comment(line.trim());
-    let mut lines = (1..).zip(text.lines()).filter(is_said);
+    // Old Macintosh programs end a line with a carriage return alone.
+    let end = if text.contains('\n') { '\n' } else { '\r' };
+    let lines = text
+        .split_terminator(end)
+        .map(|line| line.trim_end_matches('\r'));
+    let mut lines = (1..).zip(lines).filter(is_said);
     (lines.next().unwrap_or((1, "")), lines)
 }
 

@@ -39,6 +39,8 @@ pub struct LiveSamples {
     is_begun: bool,
     /// Whether the first sample has each of the columns.
     first: Option<[bool; 4]>,
+    /// What a person should know of how the header was read.
+    pub notes: Vec<String>,
 }
 
 /// A sample; NaN for a number that is missing.
@@ -65,6 +67,7 @@ impl LiveSamples {
             header: None,
             is_begun: false,
             first: None,
+            notes: Vec::new(),
         }
     }
 
@@ -123,6 +126,9 @@ impl LiveSamples {
         let read = Rows::parse_optional(&text, columns, REQUIRED, EXPECTED, &self.layout, true)?;
         let (table, there) = read;
         self.layout.mark = table.mark;
+        if row.is_empty() {
+            self.notes = table.notes;
+        }
         let first = *self.first.get_or_insert(there);
         // A sample without what the first one had is missing.
         let is_whole = first.iter().zip(there).all(|(had, has)| has || !had);
@@ -142,7 +148,9 @@ impl LiveSamples {
 
 /// An object as a header of its keys and a row of its values: text without the marks of CSV, lists and objects as a word.
 fn object(text: &str) -> Result<[String; 2], Refusal> {
-    let Members(object) = serde_json::from_str(text).map_err(|error| {
+    // As Python writes it, though it is no JSON.
+    let text = text.replace(": NaN", ": null").replace(":NaN", ":null");
+    let Members(object) = serde_json::from_str(&text).map_err(|error| {
         let right = r#"give an object such as {"position_mm": -1, "normal_force_n": 1.5}"#;
         Refusal::state(crate::file::message(&error), right)
     })?;
@@ -224,6 +232,16 @@ mod tests {
         assert_eq!(read(&more).unwrap(), samples);
     }
 
+    // Verifies: CLI-182.
+    #[test]
+    fn a_header_of_numbers_is_told() {
+        let layout = "position=1[mm],normal=2[N]".parse().unwrap();
+        let mut samples = LiveSamples::new("-", layout);
+        assert_eq!(samples.sample("-8,1.5").unwrap(), None);
+        let note = "line 1, which holds numbers, is taken for the header";
+        assert_eq!(samples.notes, [note]);
+    }
+
     // Verifies: CLI-182, MAP-041, MAP-047.
     #[test]
     fn units_below_the_header_and_the_decimal_mark_hold_for_all_lines() {
@@ -254,6 +272,7 @@ mod tests {
             ][..],
             &[
                 r#"{"position_mm": 1, "lateral_force_n": 1, "normal_force_n": null}"#,
+                r#"{"position_mm": 1, "lateral_force_n": NaN, "normal_force_n": 1}"#,
                 r#"{"position_mm": 1, "normal_force_n": 1}"#,
             ],
             // A tab at an end is before or after an empty field.

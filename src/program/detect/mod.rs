@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use anstyle::AnsiColor;
 use serde_json::json;
 
+use super::CliError;
 use super::error::refuse;
 use super::output::{Envelope, marked, note, warn, write};
-use super::CliError;
 pub use arguments::DetectArguments;
 use arguments::{Known, ModelName};
 use palpate::bank::{Bank, BankSearch};
