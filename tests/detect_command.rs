@@ -282,7 +282,7 @@ fn a_record_that_cannot_be_judged_is_neither_and_says_why() {
         let output = place().run(&format!("detect --model exact with.csv {arguments}"));
         assert_eq!(output.status.code(), Some(3), "{output:?}");
         let told: Vec<&str> = text(&output.stderr).lines().collect();
-        let words = "palpate: with.csv: cannot be judged: the noise is not as it was stated";
+        let words = "palpate: with.csv: cannot be judged: no hypothesis explains the forces";
         assert!(told.len() == 1 && told[0].starts_with(words), "{told:?}");
         let table = text(&output.stdout);
         let row = "\n\ndecision                           cannot be judged\n";

@@ -4,7 +4,7 @@ use palpate::force_map::{ForceMap, ForceTable, Measurement, SAME_POSITION, Sourc
 use palpate::refusal::Refusal;
 use palpate::servo::LoadedTable;
 
-use crate::message::check_file_message;
+use crate::message::{check_file_message, lines};
 use crate::{FILE, Outcome, judged};
 
 /// An accepted map has increasing axes and finite forces, and is the same to the bit when it is
@@ -30,7 +30,7 @@ pub fn check_csv(refusal: &Refusal, text: &str) {
         return;
     };
     let line = refusal.line.expect("a line");
-    let content = text.split('\n').nth(line - 1).unwrap_or("");
+    let content = lines(text).nth(line - 1).unwrap_or("");
     let quoted = quoted.strip_suffix('"').expect("a closing quote");
     let is_there = format!("{content:?}").contains(quoted);
     assert!(is_there, "{quoted:?} is not in line {line}, {content:?}");

@@ -29,9 +29,14 @@ pub fn check_file_message(refusal: &Refusal, text: &str) {
     }
 }
 
+/// The lines of a text, which end in a carriage return alone where there is no line feed.
+pub fn lines(text: &str) -> impl Iterator<Item = &str> {
+    text.split_terminator(if text.contains('\n') { '\n' } else { '\r' })
+}
+
 /// Checks that a line is one of the text, or the one after its end.
 pub fn check_line(line: usize, text: &str) {
-    let lines = text.lines().count();
+    let lines = lines(text).count();
     assert!(
         (1..=lines + 1).contains(&line),
         "line {line} of a text of {lines}"
@@ -43,7 +48,8 @@ pub fn check_quoting(refusal: &Refusal, text: &str) -> String {
     check_message(&refusal.to_string());
     let line = refusal.line.expect("a line");
     check_line(line, text);
-    let there = text.lines().nth(line - 1).unwrap_or_default();
+    let there = lines(text).nth(line - 1).unwrap_or_default();
+    let there = there.trim_end_matches('\r');
     let start: String = there.chars().take(80).collect();
     format!("{start:?}")
 }

@@ -60,7 +60,7 @@ pub enum Tail {
 ///
 /// Implements: DET-130, DET-134, DET-005.
 pub fn chi_square(x: f64, degrees: f64, noncentrality: f64) -> Result<Tails, NumericError> {
-    check_not_negative(x)?;
+    let x = check_not_negative(x)?;
     check_degrees("degrees", degrees)?;
     check_squares(noncentrality)?;
     let law = Central::Gamma { y: 0.5 * x };
@@ -80,7 +80,7 @@ pub fn f_ratio(
     denominator: f64,
     noncentrality: f64,
 ) -> Result<Tails, NumericError> {
-    check_not_negative(x)?;
+    let x = check_not_negative(x)?;
     check_degrees("numerator", numerator)?;
     check_degrees("denominator", denominator)?;
     check_squares(noncentrality)?;

@@ -74,7 +74,7 @@ impl CurveCause {
                 "the curve does not begin above the gel; begin it higher, or say where the probe touches"
             }
             CurveCause::Misfit => {
-                "the best fit does not describe the curve; draw it, press less deep, or check the phantom"
+                "the best fit does not describe the curve; look at its figure, press less deep, or check the phantom"
             }
         }
     }

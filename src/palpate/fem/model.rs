@@ -200,7 +200,7 @@ impl Model {
             return Ok(image.swap_remove(0).mirrored());
         }
         let mut solution = self.column(&[pose.depth], pose.lateral)?.swap_remove(0);
-        if self.mesh.symmetric && self.finite.is_none() && pose.lateral == 0.0 {
+        if self.finite.is_none() && self.is_mirrored(&[pose.lateral]) {
             solution.force.lateral = 0.0;
         }
         Ok(solution)

@@ -14,13 +14,13 @@ pub enum Cause {
     ForceUnit,
     /// The forces are too large for this gel at this depth.
     Level,
-    /// The noise is not as it was stated, or the forces are not those of the maps.
+    /// No hypothesis explains the forces, or the noise is not as stated.
     Misfit,
     /// The noise of a sample depends on that of the samples before it.
     Coloured,
     /// The sensor was at the end of its range.
     Saturated,
-    /// Too many samples are far from those beside them.
+    /// Too many samples are far from their neighbours.
     Glitches,
     /// The forces are too small for this gel at this depth.
     NoContact,

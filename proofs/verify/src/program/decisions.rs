@@ -208,9 +208,9 @@ fn tail(z: f64) -> f64 {
 const REFUSED: &str = "\
 a number that is none: inf, MAPS --noise-sd-n 0.05, record.csv:2: normal_force_n
 maps that do not differ: 1, --reference with.csv --inclusion with.csv --noise-sd-n 0.05, do not differ
-forces in mN: 1e3, MAPS --noise-sd-n 0.05, another unit
-less noise than stated: 1, MAPS --noise-sd-n 0.25, not as it was stated
-more noise than stated: 1, MAPS --noise-sd-n 0.01, not as it was stated";
+forces in mN: 1e3, MAPS --noise-sd-n 0.05, not in the stated unit
+less noise than stated: 1, MAPS --noise-sd-n 0.25, the noise is not as stated
+more noise than stated: 1, MAPS --noise-sd-n 0.01, the noise is not as stated";
 
 /// Walls and floor of a gel that nothing holds, with what the message says of the direction.
 const LOOSE: [[&str; 3]; 3] = [

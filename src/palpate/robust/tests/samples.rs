@@ -74,6 +74,7 @@ fn more_noise_than_was_stated_is_a_misfit() {
             ..RobustQuestion::default()
         };
         let record = record.clone().with_depth_sd(depth_sd).unwrap();
+        let record = record.passes().remove(0);
         let detector = detector(question, &record);
         for trial in 0..100 {
             let lateral = noise(161, 2 * trial).into_iter().map(|n| 0.02 * n);
