@@ -29,7 +29,7 @@ pub fn check_file_message(refusal: &Refusal, text: &str) {
     }
 }
 
-/// The lines of a text, which end in a carriage return alone where there is no line feed.
+/// The lines of a table, which end in a carriage return alone where there is no line feed.
 pub fn lines(text: &str) -> impl Iterator<Item = &str> {
     text.split_terminator(if text.contains('\n') { '\n' } else { '\r' })
 }
@@ -48,8 +48,7 @@ pub fn check_quoting(refusal: &Refusal, text: &str) -> String {
     check_message(&refusal.to_string());
     let line = refusal.line.expect("a line");
     check_line(line, text);
-    let there = lines(text).nth(line - 1).unwrap_or_default();
-    let there = there.trim_end_matches('\r');
+    let there = text.lines().nth(line - 1).unwrap_or_default();
     let start: String = there.chars().take(80).collect();
     format!("{start:?}")
 }
