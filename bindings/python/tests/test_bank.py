@@ -16,8 +16,8 @@ def bank():
     )
 
 
-def noisy(forces):
-    return forces + 0.05 * np.random.default_rng(1).standard_normal(forces.shape)
+def noisy(forces, sd=0.05):
+    return forces + sd * np.random.default_rng(1).standard_normal(forces.shape)
 
 
 def test_a_bank_is_built_written_and_read(bank, tmp_path):
@@ -102,13 +102,15 @@ def test_an_inclusion_is_judged_whatever_the_gel_does(bank):
     assert bank.locate(x, noisy(bowed), noise_sd_n=0.05, white=True)["inclusion"] is True
     assert bank.judge(x, noisy(bowed), noise_sd_n=0.05)["inclusion"] is not True
     disc = bank.maps[7].sweep(4, x)
-    found = bank.judge(x, noisy(disc), noise_sd_n=0.02, known=["gel", "support", "smooth"])
+    found = bank.judge(x, noisy(disc, 0.02), noise_sd_n=0.02, known=["gel", "support", "smooth"])
     assert found["inclusion"] is True and found["model"] == "robust", found
     assert found["position"]["interval"][0] < 0 < found["position"]["interval"][1]
-    assert bank.judge(x, noisy(disc), noise_sd_n=0.02, known="all")["inclusion"] is True
-    assert bank.judge(x, noisy(disc), noise_sd_n=0.02, known="none") == bank.judge(x, noisy(disc), noise_sd_n=0.02)
+    assert bank.judge(x, noisy(disc, 0.02), noise_sd_n=0.02, known="all")["inclusion"] is True
+    assert bank.judge(x, noisy(disc), known="none") == bank.judge(x, noisy(disc))
+    # More noise than was stated.
+    assert bank.judge(x, noisy(disc), noise_sd_n=0.02)["causes"] == ["misfit"]
     # A sensor of one force.
-    one = bank.judge(x, noisy(disc)[1], noise_sd_n=0.02, known=["gel", "support", "smooth"])
+    one = bank.judge(x, noisy(disc, 0.02)[1], noise_sd_n=0.02, known=["gel", "support", "smooth"])
     assert one["inclusion"] is True and one["noise_sd_lateral_n"] is None, one
     one = bank.locate(x, noisy(disc)[1], noise_sd_n=0.02, white=True)
     assert one["inclusion"] is True and one["noise_sd_lateral_n"] is None, one
