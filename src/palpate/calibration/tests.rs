@@ -385,29 +385,38 @@ fn nearly_exponential(number: u64) -> Curve {
     Curve::new("held", Some(&times), &depths, &forces).unwrap()
 }
 
-/// Whether the intervals of contact, offset and drift hold them, in the curve of that number; and how many forms may be the right one.
-fn held_whatever_form(number: u64) -> ([bool; 3], usize) {
+/// Whether the intervals of contact, offset and drift hold them, in the curve of that number.
+fn held_whatever_form(number: u64) -> [bool; 3] {
     let curve = nearly_exponential(number);
     let found = calibrate(&curve, ALONE).unwrap();
     let [offset, drift] = found.baseline().unwrap().map(Option::unwrap);
     let contact = found.contact().unwrap().unwrap();
     let held = [(contact, 0.8e-3), (offset, 0.12), (drift, -0.02)];
-    (
-        held.map(|(of, truth)| holds(of, truth)),
-        1 + found.rivals.len(),
-    )
+    held.map(|(of, truth)| holds(of, truth))
+}
+
+// The noise of this curve prefers one exponential, whose own interval does not hold the drift.
+// Verifies: CAL-022.
+#[test]
+fn a_form_that_is_nearly_as_good_widens_the_intervals() {
+    let curve = nearly_exponential(0);
+    let found = calibrate(&curve, ALONE).unwrap();
+    assert_eq!(found.relaxation, Relaxation::Prony(1));
+    let own = found.interval(|parts| parts.baseline[1]).unwrap().unwrap();
+    assert!(!holds(own, -0.02), "{own:?}");
+    assert_eq!(held_whatever_form(0), [true; 3]);
 }
 
 // Verifies: CAL-022, CAL-030. With the best form alone, 50 of 60 held the drift.
 #[test]
 #[ignore = "slow: run it with --release"]
 fn intervals_hold_what_they_state_whatever_form_is_taken() {
-    let all: Vec<_> = (0..300).into_par_iter().map(held_whatever_form).collect();
+    let all: Vec<_> = (0..100).into_par_iter().map(held_whatever_form).collect();
     for (quantity, name) in ["contact", "offset", "drift"].into_iter().enumerate() {
-        let covered = all.iter().filter(|(held, _)| held[quantity]).count();
-        println!("{name}: {covered} of 300");
-        // Of 300 intervals that hold with 95 %, fewer than 272 hold with a probability of 5e-4.
-        assert!(covered >= 272, "{name}: {covered}");
+        let covered = all.iter().filter(|held| held[quantity]).count();
+        println!("{name}: {covered} of 100");
+        // Of 100 intervals that hold with 95 %, fewer than 87 hold with a probability of 5e-4.
+        assert!(covered >= 87, "{name}: {covered}");
     }
 }
 
