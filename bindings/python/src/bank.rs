@@ -107,18 +107,15 @@ fn solved(plan: &BankPlan, progress: Option<&Py<PyAny>>) -> PyResult<Vec<Map>> {
     let all = solves.len() + 1;
     let mut maps = vec![plan.reference().map_err(refused)?];
     tell(progress, 1, all)?;
-    let mut last = vec![None; rayon::current_num_threads()];
-    for (number, few) in (0..).zip(solves.chunks(rayon::current_num_threads())) {
+    let threads = on_all(rayon::current_num_threads)?;
+    let mut last = vec![None; threads];
+    for (number, few) in (0..).zip(solves.chunks(threads)) {
         let found = few.par_iter().zip(&mut last);
         let found = found.map(|(solve, last)| plan.solve(solve, last));
         let found: Result<Vec<_>, FemError> = on_all(|| found.collect())?;
         let found = found.map_err(refused)?;
         maps.extend(found.into_iter().flatten());
-        tell(
-            progress,
-            1 + number * rayon::current_num_threads() + few.len(),
-            all,
-        )?;
+        tell(progress, 1 + number * threads + few.len(), all)?;
     }
     Ok(maps)
 }

@@ -121,7 +121,7 @@ fn model(phantom: &phantom::Phantom, mesh_mm: f64, contact_name: &str) -> PyResu
 /// The forces at poses, N, on all processors, a few at a time, so that this thread hears of Ctrl-C.
 fn solved(py: Python<'_>, model: Arc<Model>, poses: &[Pose]) -> PyResult<Vec<Force<f64>>> {
     let mut forces = Vec::with_capacity(poses.len());
-    for few in poses.chunks(rayon::current_num_threads()) {
+    for few in poses.chunks(on_all(rayon::current_num_threads)?) {
         py.check_signals()?;
         let (model, few) = (model.clone(), few.to_vec());
         forces.extend(interruptible(py, move || {
@@ -265,7 +265,10 @@ impl Phantom {
         let model = interruptible(py, move || model(&phantom, mesh_mm, &contact))?;
         let forces = solved(py, Arc::new(model), &poses)?;
         if let ([], [force]) = (&shape[..], &forces[..]) {
-            let force = ProbeForce::new(force.lateral, force.normal)?;
+            let force = ProbeForce {
+                lateral_n: force.lateral,
+                normal_n: force.normal,
+            };
             return Ok(Bound::new(py, force)?.into_any());
         }
         let lateral = forces.iter().map(|force| force.lateral);

@@ -341,7 +341,7 @@ fn best<'a>(curve: &'a Curve, known: Known, elastic: Elastic, start: &[f64]) -> 
     } else {
         &[Relaxation::None]
     };
-    let mut fits: Vec<(f64, Relaxation, Fit)> = Vec::new();
+    let mut fits: Vec<(Relaxation, Fit)> = Vec::new();
     for &relaxation in forms {
         let model = CurveModel {
             curve,
@@ -359,24 +359,22 @@ fn best<'a>(curve: &'a Curve, known: Known, elastic: Elastic, start: &[f64]) -> 
             let mut variances = (first..fit.parameters.len()).step_by(2);
             relaxation.is_seen(own, curve) && variances.all(|at| fit.covariance[(at, at)] < 1.0)
         };
-        fits.extend(
-            fit.filter(is_seen)
-                .map(|fit| (fit.criterion(), relaxation, fit)),
-        );
+        fits.extend(fit.filter(is_seen).map(|fit| (relaxation, fit)));
     }
-    fits.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let most = fits.first().map_or(0.0, |(least, ..)| least + RIVAL);
-    let near = fits
-        .into_iter()
-        .take_while(|(criterion, ..)| *criterion <= most);
-    let mut near = near.map(|(_, relaxation, fit)| (relaxation, fit));
-    let found = match near.next() {
+    fits.sort_by(|(_, a), (_, b)| a.criterion().total_cmp(&b.criterion()));
+    let mut fits = fits.into_iter();
+    let found = match fits.next() {
         Some((relaxation, fit)) => (relaxation, Some(fit)),
         None => (Relaxation::None, None),
     };
-    let rivals = near.collect();
+    let most = found
+        .1
+        .as_ref()
+        .map_or(0.0, |fit: &Fit| fit.criterion() + RIVAL);
     let mut found = Calibration::new(curve, known, elastic, found);
-    found.rivals = rivals;
+    found.rivals = fits
+        .take_while(|(_, fit)| fit.criterion() <= most)
+        .collect();
     found.cause = found.why_not();
     found
 }

@@ -407,7 +407,8 @@ fn a_form_that_is_nearly_as_good_widens_the_intervals() {
     assert_eq!(held_whatever_form(0), [true; 3]);
 }
 
-// Verifies: CAL-022, CAL-030. With the best form alone, 50 of 60 held the drift.
+// Verifies: CAL-022, CAL-030. With the best form alone, 50 of 60 intervals held the drift, in curves of another
+// simulator.
 #[test]
 #[ignore = "slow: run it with --release"]
 fn intervals_hold_what_they_state_whatever_form_is_taken() {

@@ -301,15 +301,14 @@ fn in_unit(names: &[Named], of: &str) -> Option<Named> {
     names.iter().find(same).copied()
 }
 
-/// What stands between the parts of a name. Other marks are a part of it: `Load (%)` is no force in N.
+/// What stands between the parts of a name, beside blanks. Other marks are a part of it: `Load (%)` is no force in N.
 const BETWEEN: &[char] = &[
-    ' ', '\t', '\n', '_', '-', '.', '/', '\\', ':', ',', ';', '(', ')', '[', ']', '{', '}', '"',
-    '\'',
+    '_', '-', '.', '/', '\\', ':', ',', ';', '(', ')', '[', ']', '{', '}', '"', '\'',
 ];
 
 /// The parts of a field of the header with `_` between them, in small letters, and the name in the unit behind them, if there is one.
 fn taken_apart(field: &str, names: &[Named]) -> (String, Option<Named>) {
-    let parts = field.split(BETWEEN);
+    let parts = field.split(|c: char| c.is_whitespace() || BETWEEN.contains(&c));
     let mut parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
     let last = parts.last().filter(|_| parts.len() > 1);
     let named = last.and_then(|last| in_unit(names, last));
@@ -602,6 +601,9 @@ mod tests {
         let twice = "line 1: columns 2 and 4 with the name \"Load\" in the header";
         assert!(found.starts_with(twice), "{found}");
         assert_eq!(read(text, "normal=4[N]"), Ok([1e-3, 5.0]));
+        // Spreadsheets write blanks that do not break a line.
+        let blanks = "pos\u{a0}(mm),Load\u{a0}(N)\n1,-3\n";
+        assert_eq!(read(blanks, "position=1"), Ok([1e-3, -3.0]));
     }
 
     // Verifies: MAP-047.

@@ -170,7 +170,7 @@ fn estimates_spread_as_the_bound_says() {
     }
 }
 
-// The posterior has 20 nodes between two points of the bank. At a scale of 5 a record tells places a quarter of a step apart.
+// A posterior has at most 20 nodes between two points of a bank: too few for a signal of 20 times the size.
 // Verifies: BNK-050, CLI-146.
 #[test]
 fn the_bound_is_the_inverse_of_fishers_matrix() {
