@@ -478,7 +478,7 @@ fn what_was_finished_for_another_request_is_refused_and_stays() {
     }
 }
 
-// What is written to a device is not there when it is opened again, and a pipe would be read for ever.
+// A device keeps nothing, and a pipe would be read for ever.
 // Verifies: CLI-157.
 #[cfg(unix)]
 #[test]
