@@ -106,6 +106,31 @@ fn maps_add_noise_and_predicted_shares() {
     assert_has(&text, words);
 }
 
+// Verifies: CLI-240.
+#[test]
+fn a_map_of_another_depth_than_its_name_is_told() {
+    let place = Place::new("depth_of_a_name");
+    for phantom in ["none", "2.6", "4.6"] {
+        let poses = "--depths-mm=0:4:1 --laterals-mm=-8:8:4 --mesh-mm=2 --format=json";
+        let map = place.succeed(&format!("solve --phantom {phantom} {poses}"));
+        place.write(phantom, map);
+    }
+    let ideal = "experiment --trials 1 --seconds 1 --seed 1 --observer ideal --noise 3 --journal";
+    for command in ["psychophysics", &format!("{ideal} wrong.jsonl")] {
+        let maps = "--reference none --inclusion 2.6=2.6 --inclusion 6.6=4.6";
+        let output = place.run(&format!("{command} {maps}"));
+        let told = String::from_utf8(output.stderr).unwrap();
+        let expected =
+            "palpate: warning: 4.6: the inclusion of the map named \"6.6\" is 4.6 mm deep\n";
+        assert_eq!(told, expected, "{command}");
+        assert!(output.status.success());
+    }
+    let right = place.run(&format!(
+        "{ideal} right.jsonl --reference none --inclusion 4.6=4.6"
+    ));
+    assert!(right.status.success() && right.stderr.is_empty());
+}
+
 // Verifies: CLI-080, CLI-082, CLI-003.
 #[test]
 fn a_file_of_counts_is_analysed_alone() {

@@ -14,17 +14,18 @@ use super::CliError;
 use super::error::refuse;
 use super::input::{lines, next};
 use super::numbers::newtons;
-use super::output::{print, say};
+use super::output::{print, say, warn};
 use super::platform::{raise_priority, stop_on_signals};
 use super::playback::{DeviceArguments, limits, played_map};
 use super::progress::bar;
+use palpate::decimal::mm;
 use palpate::force_map::{ForceMap, Hypotheses};
 use palpate::hid::simulated::Trajectory;
 use palpate::hid::{HapticDevice, check_device};
 use palpate::journal::Journal;
 use palpate::servo::{Limits, LoadedTable};
 use palpate_paper::psychophysics::{
-    Answer, Experiment, Felt, IdealObserver, Interval, Setup, Trial, present,
+    Answer, Experiment, Felt, IdealObserver, Interval, Setup, Trial, depth_unlike_name, present,
 };
 
 /// The force limit of each component, N.
@@ -85,6 +86,18 @@ pub(super) fn named_file(text: &str) -> Result<(String, PathBuf), String> {
     Ok((plain_name(name)?, file.into()))
 }
 
+/// Warns of a map whose inclusion has another depth than its name.
+///
+/// Implements: CLI-240.
+pub(super) fn warn_of_depth(name: &str, path: &Path, map: &ForceMap) {
+    if let Some(depth) = depth_unlike_name(name, map) {
+        let (path, depth) = (path.display(), mm(depth));
+        warn(&format!(
+            "{path}: the inclusion of the map named {name:?} is {depth} mm deep"
+        ));
+    }
+}
+
 /// A name that a row of the results can hold.
 fn plain_name(text: &str) -> Result<String, String> {
     let text = text.trim();
@@ -121,6 +134,9 @@ pub fn experiment(arguments: &ExperimentArguments) -> Result<(), CliError> {
     let path = arguments.journal.clone();
     let take = |line: &str| experiment.take(line);
     let journal = Journal::open(path, &setup, "palpate experiment", take)?;
+    for ((name, path), (map, _)) in arguments.inclusion.iter().zip(&pairs.inclusions) {
+        warn_of_depth(name, path, map);
+    }
     let total = arguments.pairs();
     let bar = match arguments.observer {
         Observer::Ideal => bar(total, "pairs"),

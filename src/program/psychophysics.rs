@@ -6,7 +6,7 @@ use askama::Template;
 use clap::Args;
 use serde::Serialize;
 
-use super::experiment::named_file;
+use super::experiment::{named_file, warn_of_depth};
 use super::numbers::length;
 use super::output::Envelope;
 use super::{CliError, Format};
@@ -87,7 +87,11 @@ fn against_maps(
         maps.push((name.as_str(), map));
     }
     let named: Vec<_> = maps.iter().map(|(name, map)| (*name, map)).collect();
-    Ok(bridge(table, &reference, &named, arguments.half_sweep)?)
+    let bridge = bridge(table, &reference, &named, arguments.half_sweep)?;
+    for ((name, map), (_, path)) in named.into_iter().zip(&arguments.inclusion) {
+        warn_of_depth(name, path, map);
+    }
+    Ok(bridge)
 }
 
 /// The answer for people, by `templates/psychophysics.txt`.

@@ -164,6 +164,28 @@ fn the_key_of_a_figure_names_its_regions_and_depth_goes_down() {
     assert!(height("0") < height("2") && height("2") < height("4"));
 }
 
+// Verifies: CLI-146, BNK-066.
+#[test]
+fn the_misses_of_a_bank_of_one_depth_are_told_to_hold_at_it_alone() {
+    let miss = "--criterion neyman-pearson-miss --max-miss 0.05";
+    for (more, warnings, expected) in [
+        (
+            "",
+            json!(["single_depth"]),
+            "palpate: warning: bank.json: its maps have a single depth of the probe: the misses keep their rate at this depth, not within the depth tolerance\n",
+        ),
+        ("--depth-tolerance-mm 0", json!([]), ""),
+        ("--known offset", json!([]), ""),
+    ] {
+        let (found, said, _) = asked(&format!("moved.csv {BY_BANK} {miss} {more}"));
+        assert_eq!(
+            (&found["warnings"], &*said),
+            (&warnings, expected),
+            "{more}"
+        );
+    }
+}
+
 // Verifies: CLI-153.
 #[test]
 fn an_interval_is_open_where_the_bank_ends() {

@@ -57,7 +57,7 @@ impl<'a> Nuisances<'a> {
             let signal = &mut rest[(column - kept) * samples..][..samples];
             let known = Nuisances { basis, samples };
             let length = normalise(signal);
-            if length > 0.0 && known.project(signal) > 0.0 {
+            if length > 0.0 && known.project(signal)? > 0.0 {
                 normalise(signal);
                 signals.copy_within(column * samples..(column + 1) * samples, kept * samples);
                 kept += 1;
@@ -78,13 +78,18 @@ impl<'a> Nuisances<'a> {
     }
 
     /// Takes from a vector what lies in the space, twice: what rounding leaves of a large part the first time goes the second.
-    /// The length of the rest, 0 if that is less than [`DEPENDENT`] of what was there.
-    pub fn project(&self, vector: &mut [f64]) -> f64 {
-        let whole = libm::sqrt(dot(vector, vector));
+    /// The length of the rest, 0 if that is at most [`DEPENDENT`] of what was there.
+    ///
+    /// # Errors
+    /// A vector whose square is beyond the largest number.
+    ///
+    /// Implements: NUI-004, DET-008.
+    pub fn project(&self, vector: &mut [f64]) -> Result<f64, DetectError> {
+        let whole = representable("gamma", libm::sqrt(dot(vector, vector)))?;
         self.take(vector);
         self.take(vector);
         let rest = libm::sqrt(dot(vector, vector));
-        if rest > DEPENDENT * whole { rest } else { 0.0 }
+        Ok(if rest > DEPENDENT * whole { rest } else { 0.0 })
     }
 
     /// Takes from a vector what lies in the space.
@@ -183,7 +188,7 @@ impl<'a> SubspaceDetector<'a> {
         check_positive("degrees of freedom", samples as f64)?;
         let squares = dot(template, template);
         let gamma_nominal = representable("gamma", libm::sqrt(squares))?;
-        let gamma = nuisances.project(template);
+        let gamma = nuisances.project(template)?;
         if gamma == 0.0 {
             return Err(DetectError::NoSignal);
         }

@@ -85,36 +85,48 @@ impl BankDetector {
         let degrees = (samples as f64 - 1.0) - rank as f64;
         check_positive("degrees of freedom", degrees)?;
         let all = templates.chunks_exact_mut(samples);
-        let gamma: Vec<f64> = all.map(|template| space.project(template)).collect();
+        let gamma = all.map(|template| space.project(template));
+        let gamma = gamma.collect::<Result<Vec<f64>, _>>()?;
         nuisances.truncate(rank * samples);
         let mut points = gamma.iter().zip(prior);
         if !points.any(|(gamma, prior)| *gamma > 0.0 && *prior > 0.0) {
             return Err(DetectError::NoSignal);
         }
-        let mut bias = vec![0.0; gamma.len()];
-        for deviation in deviations {
-            check_samples("deviation", deviation, samples)?;
-            let pairs = templates.chunks_exact(samples).zip(&gamma);
-            for (bias, (template, gamma)) in bias.iter_mut().zip(pairs) {
-                if *gamma > 0.0 {
-                    let of_this = representable("bias", dot(template, deviation) / gamma)?;
-                    *bias = f64::max(*bias, of_this.abs());
-                }
-            }
-        }
-        Ok(BankDetector {
+        let mut detector = BankDetector {
             basis: nuisances,
             samples,
             level,
             degrees,
             templates,
+            bias: vec![0.0; gamma.len()],
             gamma,
-            bias,
             deviations: deviations.to_vec(),
             prior: prior.to_vec(),
             axes: axes.clone(),
             cells: OnceLock::new(),
-        })
+        };
+        for deviation in deviations {
+            for point in 0..detector.gamma.len() {
+                detector.add_bias(point, deviation)?;
+            }
+        }
+        Ok(detector)
+    }
+
+    /// Counts in the bias of a point what a nuisance within its tolerance adds to a record, or to one with the inclusion there.
+    ///
+    /// # Errors
+    /// Another length than the templates'; NaN or infinity; overflow.
+    ///
+    /// Implements: BNK-066.
+    pub fn add_bias(&mut self, point: usize, deviation: &[f64]) -> Result<(), DetectError> {
+        check_samples("deviation", deviation, self.samples)?;
+        let gamma = self.gamma[point];
+        if gamma > 0.0 {
+            let along = dot(self.template(point), deviation) / gamma;
+            self.bias[point] = f64::max(self.bias[point], representable("bias", along)?.abs());
+        }
+        Ok(())
     }
 
     /// What a whitened residual (F_p − F_0)/s says of each point; the residual becomes what the nuisances leave of it.
@@ -125,7 +137,7 @@ impl BankDetector {
     /// Implements: BNK-031, BNK-033.
     pub fn statistic(&self, residual: &mut [f64]) -> Result<BankStatistic, DetectError> {
         check_samples("residual", residual, self.samples)?;
-        let length = Nuisances::of_basis(&self.basis, self.samples).project(residual);
+        let length = Nuisances::of_basis(&self.basis, self.samples).project(residual)?;
         let squares = representable("residual", length * length)?;
         if self.level == NoiseLevel::Unknown {
             check_positive("noise of the residual", squares)?;

@@ -48,7 +48,7 @@ impl BankDetector {
             let others = others.filter_map(|(_, slope)| slope.as_deref());
             let mut others: Vec<f64> = others.flatten().copied().collect();
             let space = Nuisances::new(&mut others, slope.len()).ok()?;
-            let left = space.project(&mut slope);
+            let left = space.project(&mut slope).ok()?;
             (left > 0.0).then(|| 1.0 / left)
         };
         let alone = [0, 1, 2, 3].map(|axis| bound(axis, false));

@@ -13,7 +13,7 @@ use crate::force_map::ForceMap;
 use crate::refusal::Refusal;
 use crate::text::extremes;
 use crate::trace::contact::{is_narrow, radius};
-use crate::trace::design::{Design, difference, expected, squares};
+use crate::trace::design::{Design, depth_error, difference, expected, squares};
 use crate::trace::{Cause, Criterion, Fit, MUCH_LIKELIER, Question, Record, is_none, refused};
 
 /// A search for the inclusion of a bank in records.
@@ -116,6 +116,9 @@ impl BankSearch<'_> {
             };
             let signals = self.bank.maps().iter().map(signal);
             let signals = signals.collect::<Result<Vec<_>, Refusal>>()?;
+            let error = |map: &ForceMap| depth_error(question, map.table(), record);
+            let errors = self.bank.maps().iter().map(error);
+            let errors = errors.collect::<Result<Vec<_>, Refusal>>()?;
             // First where it probably lies, which does not depend on the level of the noise, so that its signal is not taken for noise.
             let noise_sd = question.noise.sd.unwrap_or(Force::new(1.0, 1.0));
             let mut white = design.whitened(noise_sd);
@@ -128,7 +131,13 @@ impl BankSearch<'_> {
             let level = question.noise_level();
             // Nothing is over that of a force that is not there.
             let noise_sd = fit.noise_sd.map(|sd| sd.unwrap_or(1.0));
-            let detector = self.detector(&white, &signals, noise_sd, level)?;
+            let mut detector = self.detector(&white, &signals, noise_sd, level)?;
+            for (point, error) in errors.iter().enumerate() {
+                if let Some(error) = error {
+                    let error = white.over_noise(error, noise_sd);
+                    detector.add_bias(point, &error).map_err(refused)?;
+                }
+            }
             let mut found = self.judge(&detector, &mut white, fit)?;
             let radius = radius(self.bank.reference());
             let [first, last] = extremes(record.positions().iter().copied()).unwrap_or_default();

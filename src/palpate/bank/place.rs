@@ -8,6 +8,7 @@ use crate::force_map::SAME_POSITION;
 use crate::robust::PlaceInterval;
 use crate::stats::Bounds;
 use crate::stats::error::check_probability;
+use crate::stats::normal;
 
 /// Cells whose posterior density is less than e to the minus this of the largest do not count.
 const NEGLIGIBLE: f64 = 40.0;
@@ -217,8 +218,9 @@ impl PlacePosterior {
         Ok(Bounds { lower, upper })
     }
 
-    /// The estimate and the ends of the interval to show, which hold it; none where that is an end of the bank, for the likelihood still rises
-    /// there. Near it the likeliest place may lie where the tail of [`PlacePosterior::interval`] is.
+    /// The estimate and the ends of the interval to show, which hold it. An end is missing where the bank's own is not excluded: it is the
+    /// estimate, or its density is that of a place which the ratio of likelihoods keeps at this level. The tails of
+    /// [`PlacePosterior::interval`] would leave out an inclusion that lies at an end of the bank.
     ///
     /// # Errors
     /// As [`PlacePosterior::interval`].
@@ -226,12 +228,20 @@ impl PlacePosterior {
     /// Implements: CLI-153.
     pub fn ends(&self, axis: usize, level: f64) -> Result<PlaceInterval, DetectError> {
         let Bounds { lower, upper } = self.interval(axis, level)?;
-        let (estimate, points) = (self.estimate[axis], &self.axes[axis].points);
-        let is_within = |end: f64| (end - estimate).abs() > SAME_POSITION;
+        let (estimate, parts) = (self.estimate[axis], self.cumulated(axis));
+        let density = |ends: &[[f64; 2]]| (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0]);
+        let densities: Vec<f64> = parts.windows(2).map(density).collect();
+        let largest = densities.iter().copied().fold(0.0, f64::max);
+        let z = normal::quantile(0.5 + 0.5 * level)?;
+        let kept = largest * libm::exp(-0.5 * z * z);
+        let is_excluded = |end: [f64; 2], density: f64| {
+            (end[0] - estimate).abs() > SAME_POSITION && density < kept
+        };
+        let last = densities.len() - 1;
         Ok(PlaceInterval {
             estimate,
-            lower: is_within(points[0]).then_some(lower.min(estimate)),
-            upper: is_within(points[points.len() - 1]).then_some(upper.max(estimate)),
+            lower: is_excluded(parts[0], densities[0]).then_some(lower.min(estimate)),
+            upper: is_excluded(parts[last + 1], densities[last]).then_some(upper.max(estimate)),
         })
     }
 }

@@ -8,6 +8,7 @@ use crate::refusal::Refusal;
 use crate::robust::{
     BankHypotheses, Class, GelChanges, RobustDetector, RobustQuestion, RobustSweep,
 };
+use crate::stats::error::in_range;
 use crate::stats::normal;
 use crate::trace::design::gammas_along;
 use crate::trace::{Record, Unknown};
@@ -66,13 +67,16 @@ impl Reach<'_> {
     /// level.
     ///
     /// # Errors
-    /// Rates that are not strictly between 0 and 1.
+    /// Rates that are not strictly between 0 and 1, or so large that no γ is needed.
     ///
     /// Implements: BNK-070.
     pub fn gamma(&self) -> Result<f64, Refusal> {
         let each = self.max_false_alarm / self.bank.maps().len() as f64;
         let point = |p| normal::quantile(p).map_err(Refusal::from);
-        Ok((-point(each)? - point(self.max_miss)?).max(0.0))
+        let gamma = -point(each)? - point(self.max_miss)?;
+        let range = "less than 1 - max_false_alarm / number of maps";
+        in_range(gamma > 0.0, "max_miss", self.max_miss, range)?;
+        Ok(gamma)
     }
 
     /// What is reached with each diameter and modulus, the diameters first.

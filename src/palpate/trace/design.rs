@@ -66,32 +66,10 @@ impl Design {
             depth_noise,
             is_reversed: record.is_reversed(),
         };
-        design.add_depth_error(question, without, record)?;
+        design
+            .depth_errors
+            .extend(depth_error(question, without, record)?);
         Ok(design)
-    }
-
-    /// Counts what the tolerance of the depth does to the forces of `map`.
-    ///
-    /// Implements: TRC-064.
-    pub fn add_depth_error(
-        &mut self,
-        question: &Question<'_>,
-        map: &ForceTable,
-        record: &Record,
-    ) -> Result<(), Refusal> {
-        let (depth, tolerance) = (question.depth, question.depth_tolerance);
-        let wrong = Refusal::value(
-            "depth_tolerance_mm",
-            mm(tolerance),
-            "a length of at least 0 mm",
-        );
-        wrong.when(!(0.0..f64::INFINITY).contains(&tolerance))?;
-        if !question.is_unknown(Unknown::Depth) && tolerance > 0.0 {
-            let slope = slope(record, map, depth, expected)?;
-            self.depth_errors
-                .extend(slope.map(|slope| scaled(&slope, tolerance)));
-        }
-        Ok(())
     }
 
     /// The parts over the standard deviations of the noise, or over the covariance of the two channels where the depths have errors.
@@ -157,7 +135,7 @@ impl Design {
     pub fn unexplained(&self) -> Result<(Vec<f64>, Rank), DetectError> {
         let (mut signals, mut left) = (self.signals(true), self.residual.clone());
         let signals = Nuisances::new(&mut signals, left.len())?;
-        signals.project(&mut left);
+        signals.project(&mut left)?;
         Ok((left, signals.rank()))
     }
 
@@ -189,6 +167,28 @@ impl Design {
         check_positive("noise_sd_normal_n", sd.normal)?;
         Ok(sd)
     }
+}
+
+/// What the tolerance of the depth does to the forces of `map`, N; none where the depth is exact or unknown, or the map has one depth.
+///
+/// # Errors
+/// A tolerance that is no length; as [`Record::expected`].
+///
+/// Implements: TRC-064.
+pub fn depth_error(
+    question: &Question<'_>,
+    map: &ForceTable,
+    record: &Record,
+) -> Result<Option<Vec<f64>>, Refusal> {
+    let (depth, tolerance) = (question.depth, question.depth_tolerance);
+    let right = "a length of at least 0 mm";
+    let wrong = Refusal::value("depth_tolerance_mm", mm(tolerance), right);
+    wrong.when(!(0.0..f64::INFINITY).contains(&tolerance))?;
+    if question.is_unknown(Unknown::Depth) || tolerance == 0.0 {
+        return Ok(None);
+    }
+    let slope = slope(record, map, depth, expected)?;
+    Ok(slope.map(|slope| scaled(&slope, tolerance)))
 }
 
 /// Refuses a record whose noise is neither stated nor can be estimated.
@@ -376,7 +376,8 @@ pub fn gammas_along<'a>(
     let space = Nuisances::new(&mut nuisances, f0.len()).map_err(refused)?;
     let gamma = |map| {
         let f1 = expected(sweep, map, depth)?;
-        Ok(space.project(&mut white(&difference(&f1, &none))))
+        let signal = &mut white(&difference(&f1, &none));
+        space.project(signal).map_err(refused)
     };
     with.into_iter().map(gamma).collect()
 }

@@ -155,7 +155,8 @@ impl Noise {
             };
             let root = libm::sqrt(samples as f64 - 2.0);
             let channels = Force::new(&mut left.lateral, &mut left.normal);
-            let sd = channels.map(|channel| lines.project(channel) / root);
+            let length = channels.map(|channel| lines.project(channel));
+            let sd = Force::new(length.lateral? / root, length.normal? / root);
             check_positive("noise_sd_lateral_n", sd.lateral)?;
             check_positive("noise_sd_normal_n", sd.normal)?;
             let left = left.as_deref();

@@ -1,7 +1,7 @@
 //! The answer at the position that the maps are for.
 
 use super::cause::Cause;
-use super::design::{Design, difference, expected, squares};
+use super::design::{Design, depth_error, difference, expected, squares};
 use super::fit::{Fit, MISFIT_RATE};
 use super::question::{Criterion, Question};
 use super::{Record, refused};
@@ -120,7 +120,8 @@ impl Question<'_> {
         let mut design = Design::new(self, hypotheses.without(), record)?;
         let f1 = expected(record, hypotheses.with(), self.depth)?;
         design.template = difference(&f1, &design.reference);
-        design.add_depth_error(self, hypotheses.with(), record)?;
+        let error = depth_error(self, hypotheses.with(), record)?;
+        design.depth_errors.extend(error);
         let judged = || {
             let (white, fit) = self.fitted(&design)?;
             let (mut signals, mut template) = (white.signals(false), white.template.clone());

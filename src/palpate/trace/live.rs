@@ -96,7 +96,13 @@ impl LiveSamples {
         let read = match self.header.clone() {
             // After an object, all lines are.
             None if content.starts_with('{') || self.first.is_some() => {
-                object(text).and_then(|[header, row]| Ok(Some(self.row(&header, &row)?.0)))
+                let read = object(text).and_then(|[header, row]| self.row(&header, &row));
+                // An object has keys, no header.
+                read.map(|(sample, _)| Some(sample)).map_err(|refusal| {
+                    let words = refusal.found.split(" in the header ").next();
+                    let found = words.unwrap_or_default().replacen("no column", "no key", 1);
+                    Refusal { found, ..refusal }
+                })
             }
             None => {
                 self.header = Some(text.into());
@@ -131,7 +137,7 @@ impl LiveSamples {
         }
         let first = *self.first.get_or_insert(there);
         // A sample without what the first one had is missing.
-        let is_whole = first.iter().zip(there).all(|(had, has)| has || !had);
+        let is_whole = there == first;
         let whole = table.rows.first().filter(|_| is_whole);
         let [position, normal, lateral, depth] =
             whole.map_or([f64::NAN; 4], |(_, numbers)| *numbers);
@@ -308,7 +314,10 @@ mod tests {
                 &["position_mm,normal_force_n", "1,inf"],
                 "-:2: normal_force_n = \"inf\", but must be",
             ),
-            (&[r#"{"position_mm": 1}"#], "-:1: no column normal_force_n"),
+            (
+                &[r#"{"position_mm": 1}"#],
+                "-:1: no key normal_force_n or normal_force_mn; give ",
+            ),
             (
                 &[r#"{"position_mm": 1, "normal_force_n": [1]}"#],
                 "-:1: normal_force_n = \"[...]\", but must be",
@@ -330,7 +339,7 @@ mod tests {
                 &["position_mm,normal_force_n", "#VALUE!,2"],
                 "-:2: position_mm = \"#VALUE!\", but must be",
             ),
-            (&["{}", ""], "-:1: no column position_mm"),
+            (&["{}", ""], "-:1: no key position_mm"),
         ] {
             let error = read(lines).unwrap_err();
             assert!(error.starts_with(expected), "{error}");

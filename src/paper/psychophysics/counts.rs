@@ -1,6 +1,7 @@
 //! Right answers of subjects to inclusions, and the names in a file of them.
 
 use palpate::decimal::parse_scaled;
+use palpate::force_map::ForceMap;
 use palpate::refusal::{Refusal, shortened};
 
 /// The names of inclusions that are right, for a person.
@@ -70,6 +71,17 @@ pub(super) fn column(place: &str, name: &str) -> Result<Column, Refusal> {
         .ok_or_else(|| refused(place, name, EXPECTED_INCLUSION))?;
     let name = name.to_string();
     Ok(Column { name, depth })
+}
+
+/// The depth (m) of the only inclusion of a map's phantom, where it is more than 0.1 mm from that in its name.
+///
+/// Implements: CLI-240.
+pub fn depth_unlike_name(name: &str, map: &ForceMap) -> Option<f64> {
+    let [inclusion] = map.phantom()?.inclusions() else {
+        return None;
+    };
+    let named = column("", name).ok()?.depth;
+    ((inclusion.depth - named).abs() > 0.1e-3).then_some(inclusion.depth)
 }
 
 /// The inclusions of these names, each of which stands at a place.

@@ -51,7 +51,7 @@ mod trials;
 pub use analysis::{Analysis, ConditionAnalysis, InclusionAnalysis, SubjectAnalysis, analyse};
 pub use beta_binomial::BetaBinomial;
 pub use conditions::{ConditionComparison, Difference, InclusionDifference};
-pub use counts::{Column, Condition, MOST_TRIALS, Subject};
+pub use counts::{Column, Condition, MOST_TRIALS, Subject, depth_unlike_name};
 pub use experiment::{Answer, Experiment, Setup};
 pub use noise::{NoiseDecomposition, NoiseLevel, paper_noise_levels};
 pub use observer::{Felt, IdealObserver, present};

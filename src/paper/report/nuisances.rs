@@ -87,7 +87,7 @@ impl GammaLeft {
         let gamma = |unknown: &[Unknown], read: Read| -> Result<f64, Refusal> {
             let mut columns = columns(reference, unknown, depth, read)?;
             let mut signal = read(signal);
-            Ok(space(&mut columns, signal.len())?.project(&mut signal) / noise_sd)
+            Ok(space(&mut columns, signal.len())?.project(&mut signal)? / noise_sd)
         };
         let has_slope = |unknown: &&&[Unknown]| {
             reference.table().depths().len() > 1 || !unknown.contains(&Unknown::Depth)

@@ -173,12 +173,12 @@ fn template_use(
     let off = BOTH(signal(references[0], references[1], depth)?.as_deref());
     let space = space(&mut columns, off.len())?;
     let projected = |mut vector: Vec<f64>| {
-        let length = space.project(&mut vector);
-        (vector, length)
+        let length = space.project(&mut vector)?;
+        Ok::<_, Refusal>((vector, length))
     };
     let of = |which: usize| -> Result<_, Refusal> {
         let signal = signal(references[which], maps[which], depth)?;
-        Ok(projected(BOTH(signal.as_deref())))
+        projected(BOTH(signal.as_deref()))
     };
     let ((template, length), (there, strength)) = (of(0)?, of(1)?);
     if length == 0.0 || strength == 0.0 {
@@ -186,7 +186,7 @@ fn template_use(
     }
     let asked = settings.max_false_alarm;
     let quantile = normal::quantile(asked).map_err(Refusal::because("settings"))?;
-    let bias = dot(&template, &projected(off).0) / (length * settings.noise_sd_n);
+    let bias = dot(&template, &projected(off)?.0) / (length * settings.noise_sd_n);
     let kept = dot(&template, &there) / (length * strength);
     let false_alarm = normal::lower_tail(quantile + bias);
     Ok(Some(TemplateUseAtDepth {

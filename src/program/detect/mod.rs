@@ -24,7 +24,7 @@ use palpate::force_map::{ForceMap, ForceTable, Hypotheses};
 use palpate::rows::Rows;
 use palpate::text::extremes;
 use palpate::trace::{
-    Cause, Fit, Motion, Noise, Question, Record, Trace, Unknown, in_words, reasons,
+    Cause, Criterion, Fit, Motion, Noise, Question, Record, Trace, Unknown, in_words, reasons,
 };
 
 /// The largest error of the depth that is assumed, m.
@@ -158,6 +158,13 @@ fn by_bank(
         prior: prior.as_deref(),
         simulations: files.simulations.map(|number| (number, files.seed)),
     };
+    let asked = &search.question;
+    let is_by_misses = matches!(asked.criterion, Criterion::NeymanPearsonMiss { .. });
+    let has_tolerance = asked.depth_tolerance > 0.0 && !known.unknown.contains(&Unknown::Depth);
+    if is_by_misses && has_tolerance && bank.probe_depths().len() == 1 && warnings.0.is_empty() {
+        let text = "its maps have a single depth of the probe: the misses keep their rate at this depth, not within the depth tolerance";
+        warnings.tell("single_depth", path.display(), text);
+    }
     let found = search.locate(&record)?;
     if found.bound.is_finer_than_nodes {
         let text = "its steps are too large for so little noise, so the intervals hold the true values less often: compute a bank with smaller steps";

@@ -261,4 +261,7 @@ fn the_evidence_is_that_of_either_whole_covariance() {
     for sd in [-0.1, f64::NAN, f64::INFINITY] {
         assert!(evidence_coloured(&record, &signal, &covariance, sd, scratch).is_err());
     }
+    // A signal whose square no number holds changes the evidence with it alone.
+    let found = evidence_coloured(&record, &[1e200, 0.0], &covariance, 0.4, scratch);
+    assert_eq!(found, Err(DetectError::Overflow { what: "with" }));
 }

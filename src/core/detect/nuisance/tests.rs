@@ -181,6 +181,9 @@ fn dependent_signals_count_once() {
     let mut template = sum;
     let refused = SubspaceDetector::new(nuisances, &mut template);
     assert_eq!(refused.err(), Some(DetectError::NoSignal));
+    // Whatever is left of a vector whose square no number holds is not nothing.
+    let refused = nuisances.project(&mut [1e200; SAMPLES]);
+    assert_eq!(refused, Err(DetectError::Overflow { what: "gamma" }));
 }
 
 // Verifies: NUI-010.

@@ -47,10 +47,10 @@ impl Rows {
             .collect();
         let space = Nuisances::new(&mut basis, rows).unwrap();
         let mut z = self.residual[..rows].to_vec();
-        space.project(&mut z);
+        space.project(&mut z).unwrap();
         let of = |signal: &Vec<f64>| {
             let mut signal = signal[..rows].to_vec();
-            match space.project(&mut signal) {
+            match space.project(&mut signal).unwrap() {
                 0.0 => (0.0, 0.0),
                 _ => (
                     dot(&signal, &z) - 0.5 * dot(&signal, &signal),
@@ -75,7 +75,12 @@ impl Rows {
         for column in &self.nuisances {
             let mut basis = kept.concat();
             let mut left = column[..rows].to_vec();
-            if Nuisances::new(&mut basis, rows).unwrap().project(&mut left) > 0.0 {
+            if Nuisances::new(&mut basis, rows)
+                .unwrap()
+                .project(&mut left)
+                .unwrap()
+                > 0.0
+            {
                 kept.push(&column[..rows]);
             }
         }
@@ -87,7 +92,8 @@ impl Rows {
             (length
                 / Nuisances::new(&mut others, rows)
                     .unwrap()
-                    .project(&mut column))
+                    .project(&mut column)
+                    .unwrap())
             .powi(2)
         };
         (0..kept.len()).map(of).sum::<f64>().sqrt()

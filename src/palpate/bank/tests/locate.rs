@@ -334,6 +334,41 @@ fn thresholds_keep_what_they_promise() {
     assert!(calibrated.false_alarm.lower < 0.05 && 0.05 < calibrated.false_alarm.upper);
 }
 
+// Of 100 at 5 % more than 18 happen with the probability 5·10⁻⁷.
+// Verifies: BNK-066, TRC-064.
+#[test]
+fn misses_keep_their_rate_within_the_tolerance_of_the_depth() {
+    // A signal that grows with the cube of the depth, by a probe that is `off` (m) deeper than is said.
+    let gel = |inclusion, depths: &[f64], off: f64| {
+        let map = map(inclusion, depths);
+        let (table, columns) = (map.table(), map.table().laterals().len());
+        let normal = |row: usize, column: usize| {
+            let (said, force) = (depths[row], table.normal().row(row)[column]);
+            let depth = said + off;
+            250.0 * depth + (force - 250.0 * said) * (depth / 4e-3).powi(3)
+        };
+        let normal = Matrix::from_fn(depths.len(), columns, normal);
+        let forces = Force::new(table.lateral().unwrap().clone(), normal);
+        let table = ForceTable::new(depths.to_vec(), table.laterals().to_vec(), forces);
+        measured(map.phantom().cloned(), table.unwrap())
+    };
+    let (disc, around) = (Some((1.0, 4.0, 2.0)), [3.7e-3, 4e-3, 4.3e-3]);
+    let shallow = gel(disc, &[4e-3], -0.3e-3);
+    let misses = |depths: &[f64]| {
+        let bank = Bank::new(gel(None, &around, 0.0), vec![gel(disc, depths, 0.0)]).unwrap();
+        let miss = Criterion::NeymanPearsonMiss { max_miss: 0.05 };
+        let mut asked = search(&bank, USUAL, miss);
+        asked.question.depth_tolerance = 0.3e-3;
+        let is_missed = |seed: &u64| {
+            let found = asked.locate(&record(&shallow, Some(*seed), 0.0, 1.0));
+            found.unwrap().decision == Some(Decision::NoInclusion)
+        };
+        (0..100).filter(is_missed).count()
+    };
+    let [around, alone] = [&around[..], &[4e-3]].map(misses);
+    assert!(around <= 18 && alone > 18, "{around} {alone}");
+}
+
 // Verifies: BNK-034.
 #[test]
 fn a_prior_excludes_what_it_gives_no_weight() {
@@ -442,6 +477,17 @@ fn reach_is_where_gamma_is_enough() {
     };
     let enough = reach(0.1, &[]).gamma().unwrap();
     assert!((enough + quantile(0.01 / 40.0).unwrap() + quantile(0.05).unwrap()).abs() < 1e-12);
+    // Who may miss so many needs no signal at all.
+    let careless = |max_miss| Reach {
+        max_miss,
+        ..reach(0.1, &[])
+    };
+    assert!(careless(1.0 - 0.011 / 40.0).gamma().unwrap() > 0.0);
+    let refused = careless(1.0 - 0.009 / 40.0).gamma().unwrap_err();
+    assert!(refused.to_string().starts_with("max_miss is "), "{refused}");
+    // γ of 1e155, whose square no number holds.
+    let refused = reach(1e-156, &[]).reached().unwrap_err().to_string();
+    assert_eq!(refused, "gamma is too large to represent");
     let gamma = |depth: f64, diameter: f64, sd: f64| -> f64 {
         let of = map(Some((0.0, depth, diameter)), &[4e-3]);
         let one_depth = map(None, &[4e-3]);

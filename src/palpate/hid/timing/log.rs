@@ -2,8 +2,6 @@
 
 use std::time::Duration;
 
-use serde_json::Value;
-
 use super::budget::{Budget, Judged, Responses};
 use crate::csv::{Column, Rows};
 use crate::decimal::parse_scaled;
@@ -36,7 +34,7 @@ const EXPECTED: &str = "one of duration_ns, _us, _ms, _s (how long each cycle to
 ///
 /// Implements: CLI-173.
 pub fn judge_log(text: &str, budget: Budget) -> Result<Judged, Refusal> {
-    let (name, numbers) = match text.trim_start().starts_with('{') {
+    let (name, numbers) = match text.trim_start().starts_with(['{', '[']) {
         true => of_json_lines(text)?,
         false => {
             let rows = Rows::<1>::parse(text, [COLUMN], EXPECTED)?;
@@ -124,7 +122,8 @@ fn of_json_lines(text: &str) -> Result<(&'static str, Numbers), Refusal> {
         let (name, power) =
             named.ok_or_else(|| Refusal::state(shortened(text), give()).at(line))?;
         found = named;
-        let value = object.get(name).unwrap_or(&Value::Null);
+        let missing = || Refusal::state(format!("no {name}"), "give it in each line");
+        let value = object.get(name).ok_or_else(|| missing().at(line))?;
         let wrong = || Refusal::value(name, value, "a finite number").at(line);
         let number = value.as_number().ok_or_else(wrong)?;
         let seconds = parse_scaled(&number.to_string(), power).ok_or_else(wrong)?;
