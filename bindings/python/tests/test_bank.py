@@ -72,7 +72,9 @@ def test_places_have_the_columns_of_the_axes(bank):
             estimate = found["estimate"][name]
             ends += (low is None) + (high is None)
             assert (low is None or low <= estimate) and (high is None or estimate <= high), (seed, name)
-            assert low is not None or estimate == bank.axes[name][0]
+            # An end is missing only where the inclusion may well be on that side.
+            nearer = found["places"][:, list(bank.axes).index(name)] <= np.mean(bank.axes[name])
+            assert low is not None or found["probabilities"][nearer].sum() > 0.02, (seed, name)
     assert ends > 3
 
 
