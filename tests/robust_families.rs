@@ -157,6 +157,11 @@ fn recorded(
 
 /// The detectors by two maps, with the disc 4.6 mm deep, and by the bank.
 fn detectors(bank: &Bank) -> [RobustDetector<'static>; 2] {
+    detectors_of(bank, RobustQuestion::default())
+}
+
+/// The same for another question.
+fn detectors_of(bank: &Bank, question: RobustQuestion<'static>) -> [RobustDetector<'static>; 2] {
     let zeros = vec![0.0; SAMPLES];
     let over = Record::new("over", &positions(), Force::new(&zeros, &zeros)).unwrap();
     let changes = GelChanges::new(bank.reference(), &[DEPTH], &GelUncertainty::default()).unwrap();
@@ -167,13 +172,7 @@ fn detectors(bank: &Bank) -> [RobustDetector<'static>; 2] {
     let mut disc = signals[map].clone();
     disc.prior = 1.0;
     [&[disc][..], &signals].map(|signals| {
-        RobustDetector::new(
-            RobustQuestion::default(),
-            bank.reference().table(),
-            &[sweep],
-            signals,
-        )
-        .unwrap()
+        RobustDetector::new(question, bank.reference().table(), &[sweep], signals).unwrap()
     })
 }
 
@@ -392,6 +391,28 @@ fn a_lateral_force_that_is_not_what_it_is_said_to_be_hides_no_inclusion() {
         // With the bank a force of the other sign is too weak to tell.
         assert!(seen > 0, "{stream}");
     }
+}
+
+// A prior is no reason to doubt the lateral forces: with 1 in 1000, "no inclusion" may follow from a record that favours one by both channels.
+// Verifies: ROB-009.
+#[test]
+fn a_low_prior_blames_no_channel() {
+    let bank = bank();
+    let table = at_depth(disc_of(&bank));
+    let question = RobustQuestion {
+        prior_h1: 1e-3,
+        ..RobustQuestion::default()
+    };
+    let mut against_the_record = 0;
+    for detector in &detectors_of(&bank, question) {
+        let records = (0..20).map(|trial| record(&table, (plain, nothing), 0.2, 1200, trial));
+        for answer in answers(detector, records).1 {
+            assert!(!answer.causes.contains(&Cause::Channels), "{answer:?}");
+            let is_none = answer.decision == Some(Decision::NoInclusion);
+            against_the_record += u32::from(is_none && answer.theta > 0.0);
+        }
+    }
+    assert!(against_the_record >= 5, "{against_the_record} of 40");
 }
 
 /// The forces of a map at the depth of the sweeps alone.

@@ -136,11 +136,13 @@ impl<'a> RobustDetector<'a> {
         let [record, noise] = self.reduced(&cleaned, level);
         let has_lateral = self.sweeps.iter().any(|sweep| sweep.has_lateral);
         let alone = match has_lateral {
-            true => self.posterior_of_normal([&record, &noise])?,
+            true => self.theta_of_normal([&record, &noise]),
             false => None,
         };
-        let favours_one = alone.is_some_and(|[theta, _]| theta >= 0.0);
-        let turned = (has_lateral && !favours_one).then(|| {
+        let favours_one = alone.is_some_and(|theta| theta >= 0.0);
+        // With a low prior the answer may be "no inclusion" though the record favours one.
+        let may_be_none = !favours_one || self.question.prior_h1 < 0.5;
+        let turned = (has_lateral && may_be_none).then(|| {
             let turned: Vec<Cleaned> = cleaned.iter().map(Cleaned::turned).collect();
             let [turned, _] = self.reduced(&turned, level);
             turned
@@ -154,11 +156,15 @@ impl<'a> RobustDetector<'a> {
         self.conclude(&found, &factors, is_noisier, &mut answer)?;
         if has_lateral {
             answer.is_none_doubtful = favours_one || is_likelier_turned;
+            // The prior contradicts no channel.
+            let sure = libm::log(self.question.sure / (1.0 - self.question.sure));
             let is_contradicted = match answer.decision {
-                Some(Decision::Inclusion) => {
-                    alone.is_some_and(|[_, posterior]| posterior <= 1.0 - self.question.sure)
+                Some(Decision::Inclusion) => alone.is_some_and(|theta| theta <= -sure),
+                other => {
+                    let favours_none = answer.theta <= -sure;
+                    is_none(other, &answer.causes)
+                        && (is_likelier_turned || favours_one && favours_none)
                 }
-                other => is_none(other, &answer.causes) && answer.is_none_doubtful,
             };
             if is_contradicted {
                 answer.decision = None;
@@ -326,13 +332,10 @@ impl<'a> RobustDetector<'a> {
         Ok(())
     }
 
-    /// θ and the posterior by the normal forces alone, if they have a likelihood.
+    /// θ by the normal forces alone, if they have a likelihood.
     ///
     /// Implements: ROB-009.
-    fn posterior_of_normal(
-        &self,
-        [record, noise]: [&DVector<f64>; 2],
-    ) -> Result<Option<[f64; 2]>, Refusal> {
+    fn theta_of_normal(&self, [record, noise]: [&DVector<f64>; 2]) -> Option<f64> {
         let modes = self.sweeps.iter().map(|sweep| sweep.modes.count());
         let is_normal = modes.flat_map(|count| (0..2 * count).map(move |mode| mode >= count));
         let is_normal: Vec<bool> = is_normal.collect();
@@ -340,13 +343,9 @@ impl<'a> RobustDetector<'a> {
         let rows: Vec<usize> = rows.collect();
         let (classes, signals, shape) = of_rows(&rows, &self.weighted, &self.signals, &self.shape);
         let [record, noise] = [record, noise].map(|of| of.select_rows(&rows));
-        let Some(([found], _)) = evidence([&record], &noise, &classes, &signals, &shape) else {
-            return Ok(None);
-        };
+        let ([found], _) = evidence([&record], &noise, &classes, &signals, &shape)?;
         let [none, any] = found.totals();
-        let theta = any - none;
-        let posterior = posterior(theta, self.question.prior_h1).map_err(refused)?;
-        Ok(Some([theta, posterior]))
+        Some(any - none)
     }
 
     /// γ of signal number `signal` beside each class, in white noise of a standard deviation, N: the signal-to-noise ratio if the
