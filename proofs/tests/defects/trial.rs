@@ -62,7 +62,7 @@ fn what_is_shipped_has_no_switch() {
 }
 
 #[test]
-#[ignore = "runs the tests once for each defect, an hour or more"]
+#[ignore = "runs the tests once for each defect, half an hour"]
 fn the_tests_find_the_defects_of_the_ledger() {
     let entries = ledger();
     let copy = Copy::new("ledger", &["."]);
