@@ -186,8 +186,7 @@ impl<'a> SubspaceDetector<'a> {
         check_samples("template", template, nuisances.samples)?;
         let samples = (nuisances.samples - 1).saturating_sub(nuisances.rank().0);
         check_positive("degrees of freedom", samples as f64)?;
-        let squares = dot(template, template);
-        let gamma_nominal = representable("gamma", libm::sqrt(squares))?;
+        let gamma_nominal = libm::sqrt(dot(template, template));
         let gamma = nuisances.project(template)?;
         if gamma == 0.0 {
             return Err(DetectError::NoSignal);

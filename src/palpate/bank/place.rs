@@ -133,6 +133,18 @@ fn between(ends: &[[f64; 2]], known: usize, value: f64) -> f64 {
     from[other] + share.max(0.0) * (to[other] - from[other])
 }
 
+/// The bounds of [`PlacePosterior::interval`], by the borders of parts along its axis.
+fn bounds(parts: &[[f64; 2]], level: f64) -> Result<Bounds, DetectError> {
+    check_probability("level", level)?;
+    let point = |p: f64| {
+        let around = parts.windows(2).find(|ends| ends[1][1] >= p);
+        around.map_or(parts[parts.len() - 1][0], |ends| between(ends, 1, p))
+    };
+    let tail = 0.5 * (1.0 - level);
+    let [lower, upper] = [tail, 1.0 - tail].map(point);
+    Ok(Bounds { lower, upper })
+}
+
 impl PlacePosterior {
     /// The number of nodes of a cell.
     fn per_cell(&self) -> usize {
@@ -207,15 +219,7 @@ impl PlacePosterior {
     ///
     /// Implements: BNK-042.
     pub fn interval(&self, axis: usize, level: f64) -> Result<Bounds, DetectError> {
-        check_probability("level", level)?;
-        let parts = self.cumulated(axis);
-        let point = |p: f64| {
-            let around = parts.windows(2).find(|ends| ends[1][1] >= p);
-            around.map_or(parts[parts.len() - 1][0], |ends| between(ends, 1, p))
-        };
-        let tail = 0.5 * (1.0 - level);
-        let [lower, upper] = [tail, 1.0 - tail].map(point);
-        Ok(Bounds { lower, upper })
+        bounds(&self.cumulated(axis), level)
     }
 
     /// The estimate and the ends of the interval to show, which hold it. An end is missing where the bank's own is not excluded: it is the
@@ -227,8 +231,8 @@ impl PlacePosterior {
     ///
     /// Implements: CLI-153.
     pub fn ends(&self, axis: usize, level: f64) -> Result<PlaceInterval, DetectError> {
-        let Bounds { lower, upper } = self.interval(axis, level)?;
         let (estimate, parts) = (self.estimate[axis], self.cumulated(axis));
+        let Bounds { lower, upper } = bounds(&parts, level)?;
         let density = |ends: &[[f64; 2]]| (ends[1][1] - ends[0][1]) / (ends[1][0] - ends[0][0]);
         let densities: Vec<f64> = parts.windows(2).map(density).collect();
         let largest = densities.iter().copied().fold(0.0, f64::max);

@@ -81,6 +81,8 @@ pub struct Layout {
     pub skipped: usize,
     /// The decimal mark, if it is known from other lines.
     pub(crate) mark: Option<char>,
+    /// Whether the table was made of an object, whose keys are the header.
+    pub(crate) is_of_objects: bool,
 }
 
 /// A column as the user states it: `position=Z_Position(mm)`, `normal=-AI1*500[mN]`.

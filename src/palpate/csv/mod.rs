@@ -61,7 +61,10 @@ impl<const N: usize> Rows<N> {
         let lines = lines(text, layout);
         let header = Header::find(&lines, (columns, required), layout);
         let header = header.map_err(|(found, (line, header))| {
-            let found = format!("{found} in the header {:?}", shortened(header.trim()));
+            let found = match layout.is_of_objects {
+                true => found.replacen("no column", "no key", 1),
+                false => format!("{found} in the header {:?}", shortened(header.trim())),
+            };
             Refusal::state(found, format!("give {expected}")).at(line)
         })?;
         let mut notes = header.notes(&lines);

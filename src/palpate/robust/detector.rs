@@ -158,13 +158,11 @@ impl<'a> RobustDetector<'a> {
             answer.is_none_doubtful = favours_one || is_likelier_turned;
             // The prior contradicts no channel.
             let sure = libm::log(self.question.sure / (1.0 - self.question.sure));
+            let favours_none = |theta: f64| theta <= -sure;
+            let is_hidden = is_likelier_turned || favours_one && favours_none(answer.theta);
             let is_contradicted = match answer.decision {
-                Some(Decision::Inclusion) => alone.is_some_and(|theta| theta <= -sure),
-                other => {
-                    let favours_none = answer.theta <= -sure;
-                    is_none(other, &answer.causes)
-                        && (is_likelier_turned || favours_one && favours_none)
-                }
+                Some(Decision::Inclusion) => alone.is_some_and(favours_none),
+                other => is_none(other, &answer.causes) && is_hidden,
             };
             if is_contradicted {
                 answer.decision = None;

@@ -184,7 +184,7 @@ pub fn depth_error(
     let right = "a length of at least 0 mm";
     let wrong = Refusal::value("depth_tolerance_mm", mm(tolerance), right);
     wrong.when(!(0.0..f64::INFINITY).contains(&tolerance))?;
-    if question.is_unknown(Unknown::Depth) || tolerance == 0.0 {
+    if !question.has_depth_tolerance() {
         return Ok(None);
     }
     let slope = slope(record, map, depth, expected)?;

@@ -96,13 +96,8 @@ impl LiveSamples {
         let read = match self.header.clone() {
             // After an object, all lines are.
             None if content.starts_with('{') || self.first.is_some() => {
-                let read = object(text).and_then(|[header, row]| self.row(&header, &row));
-                // An object has keys, no header.
-                read.map(|(sample, _)| Some(sample)).map_err(|refusal| {
-                    let words = refusal.found.split(" in the header ").next();
-                    let found = words.unwrap_or_default().replacen("no column", "no key", 1);
-                    Refusal { found, ..refusal }
-                })
+                self.layout.is_of_objects = true;
+                object(text).and_then(|[header, row]| Ok(Some(self.row(&header, &row)?.0)))
             }
             None => {
                 self.header = Some(text.into());

@@ -117,6 +117,13 @@ impl Question<'_> {
         self.unknown.contains(&what)
     }
 
+    /// Whether the depth is known, but not exactly.
+    ///
+    /// Implements: TRC-064.
+    pub fn has_depth_tolerance(&self) -> bool {
+        self.depth_tolerance > 0.0 && !self.is_unknown(Unknown::Depth)
+    }
+
     /// The decision of a record that fits so, or why it cannot be judged.
     ///
     /// Implements: TRC-075, TRC-016.

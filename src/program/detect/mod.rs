@@ -24,7 +24,7 @@ use palpate::force_map::{ForceMap, ForceTable, Hypotheses};
 use palpate::rows::Rows;
 use palpate::text::extremes;
 use palpate::trace::{
-    Cause, Criterion, Fit, Motion, Noise, Question, Record, Trace, Unknown, in_words, reasons,
+    Cause, Criterion, Fit, Motion, Noise, Question, Record, Trace, in_words, reasons,
 };
 
 /// The largest error of the depth that is assumed, m.
@@ -160,8 +160,8 @@ fn by_bank(
     };
     let asked = &search.question;
     let is_by_misses = matches!(asked.criterion, Criterion::NeymanPearsonMiss { .. });
-    let has_tolerance = asked.depth_tolerance > 0.0 && !known.unknown.contains(&Unknown::Depth);
-    if is_by_misses && has_tolerance && bank.probe_depths().len() == 1 && warnings.0.is_empty() {
+    let has_one_depth = bank.probe_depths().len() == 1 && warnings.0.is_empty();
+    if is_by_misses && asked.has_depth_tolerance() && has_one_depth {
         let text = "its maps have a single depth of the probe: the misses keep their rate at this depth, not within the depth tolerance";
         warnings.tell("single_depth", path.display(), text);
     }
@@ -212,22 +212,20 @@ fn question<'a>(
     (reference, file): (&ForceTable, &Path),
     warnings: &mut Warnings,
 ) -> Result<Question<'a>, CliError> {
-    let unknown = &known.unknown;
-    let depth_tolerance = depth_tolerance(arguments);
-    let has_one_depth = reference.depths().len() == 1;
-    if depth_tolerance > 0.0 && has_one_depth && !unknown.contains(&Unknown::Depth) {
-        let text = "the map has a single depth: the depth tolerance has no effect";
-        warnings.tell("single_depth", file.display(), text);
-    }
-    Ok(Question {
+    let question = Question {
         depth,
-        depth_tolerance,
+        depth_tolerance: depth_tolerance(arguments),
         is_zeroed: arguments.model.zeroed,
-        unknown,
+        unknown: &known.unknown,
         noise,
         criterion: arguments.criterion.criterion()?,
         prior_h1: arguments.criterion.prior_h1,
-    })
+    };
+    if question.has_depth_tolerance() && reference.depths().len() == 1 {
+        let text = "the map has a single depth: the depth tolerance has no effect";
+        warnings.tell("single_depth", file.display(), text);
+    }
+    Ok(question)
 }
 
 /// The largest error of the depth, m, with the exact model.
