@@ -91,10 +91,7 @@ impl StiffnessMatrix {
         for (index, nodes) in mesh.elements().enumerate() {
             let positions = mesh.positions(nodes);
             let material = mesh.regions[index].material(phantom);
-            let stiffness = match phantom.geometry() {
-                Geometry::Plane => rule.integrate(&positions, material),
-                Geometry::Axisymmetric => rule.integrate_revolved(&positions, material),
-            };
+            let stiffness = rule.integrate(&positions, material, phantom.geometry());
             let stiffness = stiffness.map_err(|jacobian| folded(index, positions[0], jacobian))?;
             let row_of = |k: usize| self.unknown[nodes[k / 2] as usize][k % 2];
             for k in 0..2 * nodes.len() {

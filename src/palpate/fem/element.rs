@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix2, SMatrix, Vector2};
 
-use crate::phantom::Material;
+use crate::phantom::{Geometry, Material};
 
 /// Corners of an element: its first nodes.
 pub const CORNERS: usize = 3;
@@ -12,7 +12,7 @@ pub const NODES: usize = 6;
 /// One column for each node.
 pub type PerNode = SMatrix<f64, 2, NODES>;
 
-/// Stiffness of one element per metre of thickness, Pa: `[(2a + i, 2b + j)]` couples direction i of node a with
+/// Stiffness of one element, in a plane per metre of thickness, Pa: `[(2a + i, 2b + j)]` couples direction i of node a with
 /// direction j of node b. Exactly symmetric.
 ///
 /// Implements: FEM-005, FEM-050.
@@ -133,53 +133,18 @@ impl Default for StiffnessRule {
 }
 
 impl StiffnessRule {
-    /// Stiffness of an element with nodes at `positions`, or the Jacobian that is not positive.
+    /// Stiffness of an element with nodes at `positions`, or the Jacobian that is not positive. In a plane it is that of 1 m of length,
+    /// Pa. Turned about the axis x = 0 it is that of half a turn, N/m: the mirror image is turned by the other half.
     ///
-    /// The block of nodes a, b is ∫ λ ∇N_a ∇N_bᵀ + μ ∇N_b ∇N_aᵀ + μ (∇N_a·∇N_b) I, and for fibres along f with the modulus E_f
-    /// ∫ E_f (∇N_a·f)(∇N_b·f) f fᵀ more.
+    /// With h_a = 0 in a plane, N_a/x about the axis, and d_a = ∇N_a + h_a e_x, the block of nodes a, b is ∫ λ d_a d_bᵀ + μ ∇N_b ∇N_aᵀ +
+    /// μ (∇N_a·∇N_b) I + 2 μ h_a h_b e_x e_xᵀ, and for fibres along f with the modulus E_f ∫ E_f (∇N_a·f)(∇N_b·f) f fᵀ more.
     ///
-    /// Implements: FEM-017.
-    pub fn integrate(&self, positions: &[[f64; 2]], material: &Material) -> Result<Stiffness, f64> {
-        let (lambda, mu) = lame(material);
-        let fibres = Vector2::from(material.fibre_direction());
-        let mut stiffness = Stiffness::zeros();
-        for (_, parent, weight) in &self.0 {
-            let g = gradients(parent, positions);
-            // A NaN is refused as well.
-            if g.jacobian.is_nan() || g.jacobian <= 0.0 {
-                return Err(g.jacobian);
-            }
-            let volume = weight * g.jacobian;
-            for a in 0..positions.len() {
-                let ga = g.of_node.column(a) * volume;
-                for b in 0..=a {
-                    let gb = g.of_node.column(b);
-                    let mut block = stiffness.fixed_view_mut::<2, 2>(2 * a, 2 * b);
-                    block += lambda * ga * gb.transpose()
-                        + mu * gb * ga.transpose()
-                        + Matrix2::from_diagonal_element(mu * ga.dot(&gb));
-                    if material.fibre_modulus > 0.0 {
-                        let both = material.fibre_modulus * ga.dot(&fibres) * gb.dot(&fibres);
-                        block += both * fibres * fibres.transpose();
-                    }
-                }
-            }
-        }
-        stiffness.fill_upper_triangle_with_lower_triangle();
-        Ok(stiffness)
-    }
-
-    /// Stiffness of an element that is turned about the axis x = 0, N/m, by half a turn: its mirror image is turned by the other.
-    /// Or the Jacobian that is not positive.
-    ///
-    /// With h_a = N_a/x and d_a = ∇N_a + h_a e_x, the block of nodes a, b is ∫ λ d_a d_bᵀ + μ ∇N_b ∇N_aᵀ + μ (∇N_a·∇N_b) I +
-    /// 2 μ h_a h_b e_x e_xᵀ, and fibres as in [`StiffnessRule::integrate`].
-    ///
-    /// Implements: FEM-081.
-    pub fn integrate_revolved(
+    /// Implements: FEM-017, FEM-081.
+    pub fn integrate(
         &self,
         positions: &[[f64; 2]],
         material: &Material,
+        geometry: Geometry,
     ) -> Result<Stiffness, f64> {
         let (lambda, mu) = lame(material);
         let fibres = Vector2::from(material.fibre_direction());
@@ -190,20 +155,25 @@ impl StiffnessRule {
             if g.jacobian.is_nan() || g.jacobian <= 0.0 {
                 return Err(g.jacobian);
             }
-            let (way, hoop) = revolved(*at, positions);
+            let (way, hoop) = match geometry {
+                Geometry::Plane => (1.0, [0.0; NODES]),
+                Geometry::Axisymmetric => revolved(*at, positions),
+            };
             let volume = weight * g.jacobian * way;
             for a in 0..NODES {
-                let (ga, ha) = (g.of_node.column(a), hoop[a] * Vector2::x());
+                let ga = g.of_node.column(a) * volume;
+                let ha = hoop[a] * volume * Vector2::x();
                 for b in 0..=a {
                     let (gb, hb) = (g.of_node.column(b), hoop[b] * Vector2::x());
-                    let along = material.fibre_modulus * ga.dot(&fibres) * gb.dot(&fibres);
-                    let of_pair = lambda * (ga + ha) * (gb + hb).transpose()
+                    let mut block = stiffness.fixed_view_mut::<2, 2>(2 * a, 2 * b);
+                    block += lambda * (ga + ha) * (gb + hb).transpose()
                         + mu * gb * ga.transpose()
                         + Matrix2::from_diagonal_element(mu * ga.dot(&gb))
-                        + 2.0 * mu * ha * hb.transpose()
-                        + along * fibres * fibres.transpose();
-                    let mut block = stiffness.fixed_view_mut::<2, 2>(2 * a, 2 * b);
-                    block += of_pair * volume;
+                        + 2.0 * mu * ha * hb.transpose();
+                    if material.fibre_modulus > 0.0 {
+                        let both = material.fibre_modulus * ga.dot(&fibres) * gb.dot(&fibres);
+                        block += both * fibres * fibres.transpose();
+                    }
                 }
             }
         }

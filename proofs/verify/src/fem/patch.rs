@@ -3,7 +3,7 @@
 use faer::{Mat, Side};
 
 use palpate::fem::element::{NODES, StiffnessRule};
-use palpate::phantom::Material;
+use palpate::phantom::{Geometry, Material};
 
 use super::problem::{Exact, Field, Problem, inside_out, lame, material};
 use super::{Figure, Measured, largest, least};
@@ -155,7 +155,11 @@ pub fn rigid() -> Measured {
         let mut elements = Vec::new();
         for nodes in &problem.elements {
             let stiffness = rule
-                .integrate(&problem.positions(nodes), &NEARLY_INCOMPRESSIBLE)
+                .integrate(
+                    &problem.positions(nodes),
+                    &NEARLY_INCOMPRESSIBLE,
+                    Geometry::Plane,
+                )
                 .map_err(inside_out)?;
             let matrix = Mat::from_fn(2 * NODES, 2 * NODES, |i, j| stiffness[(i, j)]);
             elements.push(shares(matrix)?);

@@ -5,7 +5,7 @@ use faer::Col;
 use faer::linalg::solvers::Solve;
 use faer::sparse::{SparseColMat, Triplet};
 use palpate::fem::element::{NODES, PerNode, StiffnessRule, gradients, parent_gradients, stress};
-use palpate::phantom::Material;
+use palpate::phantom::{Geometry, Material};
 
 use super::Measured;
 
@@ -173,7 +173,7 @@ impl Problem {
         let rule = StiffnessRule::default();
         for (nodes, material) in self.elements.iter().zip(&self.materials) {
             let stiffness = rule
-                .integrate(&self.positions(nodes), material)
+                .integrate(&self.positions(nodes), material, Geometry::Plane)
                 .map_err(inside_out)?;
             for (a, na) in nodes.iter().enumerate() {
                 for (b, nb) in nodes.iter().enumerate() {

@@ -19,7 +19,11 @@ fn everything(mesh: &Mesh, phantom: &Phantom) -> DMatrix<f64> {
     let n = 2 * mesh.nodes.len();
     let mut all = DMatrix::zeros(n, n);
     for (nodes, region) in mesh.elements().zip(&mesh.regions) {
-        let element = rule.integrate(&mesh.positions(nodes), region.material(phantom));
+        let element = rule.integrate(
+            &mesh.positions(nodes),
+            region.material(phantom),
+            phantom.geometry(),
+        );
         let element = element.unwrap();
         let place = |k: usize| 2 * nodes[k / 2] as usize + k % 2;
         for row in 0..2 * nodes.len() {

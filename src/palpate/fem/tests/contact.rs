@@ -246,7 +246,9 @@ fn reaction_of_floor_and_walls_is_the_force_on_the_probe() {
     let mut reaction = [0.0; 2];
     for (nodes, region) in mesh.elements().zip(&mesh.regions) {
         let material = region.material(model.phantom());
-        let stiffness = rule.integrate(&mesh.positions(nodes), material).unwrap();
+        let stiffness = rule
+            .integrate(&mesh.positions(nodes), material, model.phantom().geometry())
+            .unwrap();
         for (row, &node) in nodes.iter().enumerate() {
             if mesh.held[node as usize] != [true; 2] {
                 continue;

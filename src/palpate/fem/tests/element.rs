@@ -2,7 +2,7 @@ use crate::fem::Mesh;
 use crate::fem::element::{Stiffness, StiffnessRule, gradients, parent_gradients, stress};
 use crate::fem::field::determinant;
 use crate::fem::vtu::von_mises;
-use crate::phantom::Material;
+use crate::phantom::{Geometry, Material};
 use palpate_asserts::{assert_near, numbers_of};
 
 use super::builtin;
@@ -28,7 +28,7 @@ fn triangle_matches_exact_rationals() {
     let middle = |a: usize, b: usize| [0, 1].map(|k| 0.5 * (corners[a][k] + corners[b][k]));
     let middles = [middle(0, 1), middle(1, 2), middle(2, 0)];
     let positions = [corners, middles].concat();
-    let stiffness = StiffnessRule::default().integrate(&positions, &QUARTER);
+    let stiffness = StiffnessRule::default().integrate(&positions, &QUARTER, Geometry::Plane);
     let exact = numbers_of::<12>("tables/fem.txt", "stiffness of a triangle");
     let exact = |row: usize, column: usize| exact[row][column] / 75.0;
     assert_close(&stiffness.unwrap(), exact, 12);
@@ -50,7 +50,9 @@ fn internal_force(mesh: &Mesh, u: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<[f64; 2]
     let rule = StiffnessRule::default();
     let mut force = vec![[0.0; 2]; mesh.nodes.len()];
     for nodes in mesh.elements() {
-        let stiffness = rule.integrate(&mesh.positions(nodes), &material).unwrap();
+        let stiffness = rule
+            .integrate(&mesh.positions(nodes), &material, Geometry::Plane)
+            .unwrap();
         for (a, &node) in nodes.iter().enumerate() {
             for (b, &other) in nodes.iter().enumerate() {
                 let displacement = u(mesh.nodes[other as usize]);

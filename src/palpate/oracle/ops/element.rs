@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Code, Refused, Rows, answer};
 use crate::fem::element::{NODES, StiffnessRule};
-use crate::phantom::Material;
+use crate::phantom::{Geometry, Material};
 
 /// The stiffness matrix, Pa, of an element in plane strain, 1 m thick.
 pub fn stiffness(
@@ -23,7 +23,8 @@ pub fn stiffness(
         return Err(Refused::range(wrong));
     }
     let material = Material::isotropic(youngs_modulus, poisson_ratio);
-    let stiffness = StiffnessRule::default().integrate(nodes.as_chunks::<2>().0, &material);
+    let stiffness =
+        StiffnessRule::default().integrate(nodes.as_chunks::<2>().0, &material, Geometry::Plane);
     let stiffness = stiffness.map_err(not_positive)?;
     let rows = stiffness.row_iter();
     let rows: Vec<Vec<f64>> = rows.map(|row| row.iter().copied().collect()).collect();

@@ -7,7 +7,7 @@ use super::{BENT, long, rich, sphere};
 use crate::fem::Mesh;
 use crate::fem::element::{CORNERS, NODES, StiffnessRule, stress};
 use crate::fem::tests::off_centre;
-use crate::phantom::{Material, Phantom};
+use crate::phantom::{Geometry, Material, Phantom};
 use crate::stats::tails::halved;
 use palpate_asserts::assert_near;
 
@@ -177,7 +177,7 @@ fn fibres_stiffen_small_and_finite_strain_alike() {
     );
     let rule = StiffnessRule::default();
     let [without, with] =
-        [plain, fibrous].map(|material| rule.integrate(&BENT, &material).unwrap());
+        [plain, fibrous].map(|material| rule.integrate(&BENT, &material, Geometry::Plane).unwrap());
     let points = points(&BENT, &long(1.0)).unwrap();
     let [bare, stiff] = [plain, fibrous].map(|material| {
         let element = Law::from(&material)

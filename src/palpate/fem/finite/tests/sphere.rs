@@ -30,7 +30,10 @@ fn a_revolved_gel_stretched_alike_everywhere_has_no_force_inside() {
             k => [a, b][k % 2] * positions[k / 2][k % 2],
         });
         let moved = state.fixed_rows::<{ 2 * NODES }>(0).into_owned();
-        let small = rule.integrate_revolved(&positions, &material).unwrap() * moved;
+        let small = rule
+            .integrate(&positions, &material, phantom.geometry())
+            .unwrap()
+            * moved;
         let finite = law
             .element(&points(&positions, &phantom).unwrap(), &state)
             .unwrap()
