@@ -40,6 +40,7 @@ fn a_configured_run_gives_the_same_bytes_with_any_number_of_threads() {
 /// with a friction of 0.3, and changes by 7.3 and about 14 % for each per cent of ν.
 // Verifies: CLI-179, REP-090, REP-092, CLI-015.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn theories_are_compared_by_forces_that_another_program_found() {
     let here = Place::new("theories");
     let config = "phantoms = [\"2.6\"]\ndepths_mm = \"4\"\nlaterals_mm = \"-4,0,4\"\n[mesh]\nsize_mm = 2.0\n";

@@ -18,6 +18,7 @@ fn the_files_are_as_the_generator_writes_them() {
 // Verifies: VEC-001, VEC-003, VEC-004, VEC-005, VEC-008, VEC-011, VEC-014, VEC-016,
 // VEC-018. The second route has the order of operations of VEC-011, Cowper's points as tables print them, and θ by projection.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn the_suite_is_sound() {
     if let Some(text) = printed("vectors/check.py", &[]) {
         assert!(text.contains(" 0 problems"), "{text}");

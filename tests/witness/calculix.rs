@@ -108,6 +108,7 @@ fn differences(phantom: &Phantom, lateral: f64, size: f64, depths: &[f64]) -> Ve
 
 // Verifies: FEM-080, FEM-082.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn calculix_finds_our_forces_without_inclusion() {
     compare("none", 0.0, 8e-3);
 }
@@ -145,6 +146,7 @@ fn compare_finite(name: &str, size: f64, depths: &[f64]) {
 
 // Verifies: FIN-013.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn calculix_finds_our_forces_at_finite_strain() {
     compare_finite("none", 1e-3, &[2.5e-3]);
 }

@@ -64,6 +64,7 @@ fn every_check_is_of_a_part_and_has_a_name_of_its_own_a_claim_and_requirements()
 
 // Verifies: FEM-008, FEM-009, FEM-014, FEM-013, FEM-020, FEM-026, FEM-050, FEM-059, FEM-060, FEM-062.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn the_solver_agrees_with_exact_solutions_and_other_programs() {
     pass("fem");
 }
@@ -74,6 +75,7 @@ fn simulated_records_agree_with_the_closed_form() {
 }
 
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn the_program_that_was_built_is_right_from_outside() {
     let test = std::env::current_exe().expect("a test has a path");
     let program = test.with_file_name("../palpate");
