@@ -213,14 +213,26 @@ impl RobustAnswer {
         }
         if let Some((bank, place)) = place.filter(|_| is_compared) {
             let (key, deepest) = ("no_inclusion_down_to_m", place.none_down_to);
-            match deepest.filter(|_| self.decision != Some(Decision::Inclusion)) {
+            let is_of_two = self.decision != Some(Decision::NoInclusion) && place.several > 0.5;
+            let is_told = self.decision != Some(Decision::Inclusion) && !is_of_two;
+            match deepest.filter(|_| is_told) {
                 Some(depth) => {
                     let text = format!("{:.3}", 1e3 * depth);
                     rows.shown(key, "no inclusion down to, mm", depth, text);
                 }
                 None => rows.value(key, deepest),
             }
-            place_rows(bank, place, &mut rows);
+            let only = if is_of_two {
+                ", if there is one alone"
+            } else {
+                ""
+            };
+            place_rows(bank, place, only, &mut rows);
+            let (key, several) = ("several_inclusions", place.several);
+            match is_of_two {
+                true => rows.number(key, "P(two inclusions, if any)", several),
+                false => rows.value(key, several),
+            }
         }
         let channels = |of: fn(&Force<Option<f64>>) -> Option<f64>| {
             self.noise_sd.iter().map(of).collect::<Vec<_>>()
@@ -244,7 +256,7 @@ impl RobustAnswer {
 }
 
 /// The interval of each parameter that the bank varies.
-fn place_rows(bank: &Bank, place: &RobustPlace, rows: &mut Rows) {
+fn place_rows(bank: &Bank, place: &RobustPlace, only: &str, rows: &mut Rows) {
     for (axis, parameter) in Parameter::ALL.into_iter().enumerate() {
         let Some(interval) = place.intervals[axis] else {
             continue;
@@ -252,14 +264,13 @@ fn place_rows(bank: &Bank, place: &RobustPlace, rows: &mut Rows) {
         let (key, scale, label) = parameter_row(parameter);
         let shown = |x: f64| format!("{:.3}", scale * x);
         let (estimate, range) = (shown(interval.estimate), interval.in_words(shown));
-        let text = format!("{estimate}, 95 % interval {range}");
+        let text = format!("{estimate}, 95 % interval {range}{only}");
         let ends = [interval.lower, interval.upper];
         let value =
             json!({"estimate": interval.estimate, "interval": ends, "unit": parameter.unit()});
         rows.shown(key, label, value, text);
     }
     rows.value("hypotheses", bank.maps().len());
-    rows.value("several_inclusions", place.several);
 }
 
 /// The key of a parameter, its scale for people and their words for it.

@@ -63,7 +63,7 @@ pub fn false_alarm_bound(tests: &[SubspaceTest], eta: f64) -> Result<f64, Detect
 /// The least threshold η, to 10 digits, at which that bound is at most `max_false_alarm`.
 ///
 /// # Errors
-/// A rate that is not strictly between 0 and 1.
+/// A rate that is not strictly between 0 and 1; no test.
 ///
 /// Implements: BNK-051.
 pub fn false_alarm_threshold(
@@ -71,6 +71,8 @@ pub fn false_alarm_threshold(
     max_false_alarm: f64,
 ) -> Result<f64, DetectError> {
     check_probability("max_false_alarm", max_false_alarm)?;
+    let count = tests.len() as f64;
+    in_range(count > 0.0, "number of tests", count, "above 0")?;
     let (mut low, mut high) = (-1.0, 1.0);
     while false_alarm_bound(tests, low)? <= max_false_alarm {
         low *= 2.0;

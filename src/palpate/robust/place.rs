@@ -132,20 +132,16 @@ impl<'a> BankHypotheses<'a> {
             .map(|((_, prior), theta)| libm::log(*prior) + theta)
             .collect();
         let whole = logs.iter().copied().fold(f64::NEG_INFINITY, log_sum);
-        let shares: Vec<f64> = logs.iter().map(|log| libm::exp(log - whole)).collect();
-        let singles = self
-            .of
-            .iter()
-            .zip(&shares)
-            .filter(|((maps, _), _)| maps.len() == 1);
-        let one: f64 = singles.clone().map(|(_, share)| share).sum();
+        let all = self.of.iter().zip(&logs);
+        let singles = all.filter(|((maps, _), _)| maps.len() == 1);
+        let logs_of_one = singles.clone().map(|(_, log)| *log);
+        let of_one = logs_of_one.fold(f64::NEG_INFINITY, log_sum);
         let marginals = [0, 1, 2, 3].map(|number: usize| {
             let values = &self.bank.axes()[number];
             let mut along = vec![0.0; values.len()];
-            for ((maps, _), share) in singles.clone() {
+            for ((maps, _), log) in singles.clone() {
                 let value = self.bank.point(maps[0])[number];
-                along[values.partition_point(|of| *of < value)] +=
-                    share / one.max(f64::MIN_POSITIVE);
+                along[values.partition_point(|of| *of < value)] += libm::exp(log - of_one);
             }
             along
         });
@@ -156,7 +152,7 @@ impl<'a> BankHypotheses<'a> {
         RobustPlace {
             intervals: [0, 1, 2, 3].map(axis),
             marginals,
-            several: (1.0 - one).max(0.0),
+            several: (1.0 - libm::exp(of_one - whole)).max(0.0),
             none_down_to: self
                 .none_down_to(&answer.thetas)
                 .filter(|_| !self.is_zeroed && !answer.is_none_doubtful),

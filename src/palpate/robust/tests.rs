@@ -11,8 +11,8 @@ use super::explanation::fitted;
 use super::gates::{is_saturated, is_stuck, step, without_glitches};
 use super::modes::Modes;
 use super::{
-    BankHypotheses, GelChanges, GelUncertainty, RobustAnswer, RobustDetector, RobustQuestion,
-    RobustSignal, RobustSweep,
+    BankHypotheses, GelChanges, GelUncertainty, RobustAnswer, RobustDetector, RobustPlace,
+    RobustQuestion, RobustSignal, RobustSweep,
 };
 use crate::bank::{Bank, BankPlan};
 use crate::detect::Decision;
@@ -585,6 +585,18 @@ fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
     assert_eq!(down_to([-9.0, -9.0, -9.0]), Some(5.6e-3));
     assert_eq!(down_to([-9.0, -9.0, 0.0]), Some(4.6e-3));
     assert_eq!(down_to([0.0, -9.0, -9.0]), None);
+    // One inclusion has its place even where two explain the record far better.
+    let mut thetas = vec![1e4; answer.thetas.len()];
+    thetas[..bank.maps().len()].fill(0.0);
+    thetas[0] = 50.0;
+    let two = RobustAnswer {
+        thetas,
+        ..answer.clone()
+    };
+    let found = hypotheses.place(&two);
+    assert_eq!(found.several, 1.0);
+    let at = found.intervals[1].unwrap().estimate;
+    assert_near(at, bank.point(0)[1], 1e-12);
     for hypothesis in [0, 1] {
         let shares = answer.classes.iter().map(|(_, shares)| shares[hypothesis]);
         assert_near(shares.sum(), 1.0, 1e-12);
@@ -614,6 +626,25 @@ fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
     let rows = answer.rows(Some((&bank, &place)));
     assert!(rows.get("no_inclusion_down_to_m").unwrap().is_null());
     assert!(!rows.table().contains("no inclusion down to"));
+    // What is excluded one by one may be there as two.
+    for (several, line) in [
+        (0.4, "no inclusion down to, mm"),
+        (0.6, "P(two inclusions, if any)"),
+    ] {
+        let none_down_to = Some(5e-3);
+        let place = RobustPlace {
+            several,
+            none_down_to,
+            ..place.clone()
+        };
+        let table = answer.rows(Some((&bank, &place))).table();
+        let lines = ["no inclusion down to, mm", "P(two inclusions, if any)"];
+        assert_eq!(
+            lines.map(|of| table.contains(of)),
+            lines.map(|of| of == line),
+            "{table}"
+        );
+    }
 }
 
 // Verifies: ROB-032.
