@@ -143,6 +143,21 @@ fn what_lies_beyond_the_bank_is_said() {
     assert!(!table.contains("than the bank"), "{table}");
 }
 
+// Verifies: CLI-160.
+#[test]
+fn a_rate_that_is_not_0_is_not_said_to_be() {
+    let rates = |false_alarm: &str| {
+        let table = place().succeed(&format!(
+            "reach --bank bank.json --noise-sd-n 1 --max-false-alarm {false_alarm} --max-miss 0.07"
+        ));
+        let first = table.lines().next().unwrap();
+        first.split_once(": ").unwrap().1.to_owned()
+    };
+    let search = "false alarms in a search over the whole bank, and 7 % misses.";
+    assert_eq!(rates("2e-14"), format!("at most 0.000000000002 % {search}"));
+    assert_eq!(rates("2e-300"), format!("at most 2.0e−298 % {search}"));
+}
+
 // Verifies: CLI-163.
 #[test]
 fn the_figure_shows_both_lines_and_says_them_in_words() {

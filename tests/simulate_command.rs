@@ -71,6 +71,16 @@ fn a_record_is_the_same_alone_and_among_others_from_a_phantom_and_from_its_map()
             "a path has no length, speed, rate or depth",
         ),
         ("--depths-mm 3 --hand 0,5,500", "a hand of 0 kg"),
+        (
+            "--depths-mm 1 --speed-mm-s 0.0001 --rate-hz 0.01 --hand 0.05,5,500",
+            "a path of 60000 s with a hand",
+        ),
+        ("--depths-mm 3 --tremor-hz 3", "not provided: --tremor-mm"),
+        ("--depths-mm 3 --correlation 0.9", "--noise-sd-n"),
+        (
+            "--depths-mm 3 --depth-noise-mm 1 --no-depths",
+            "cannot be used with",
+        ),
     ] {
         let ends = if arguments.contains("-mm -") || arguments.contains("to-mm") {
             ""

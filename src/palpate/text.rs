@@ -54,6 +54,14 @@ pub fn scientific(value: impl Borrow<f64>) -> String {
     with_minus(&format!("{:.1e}", value.borrow()))
 }
 
+/// A rate that was asked for, in per cent, without its sign: in full, or by its power of ten where it is below 1e−12 %.
+pub fn in_percent(rate: impl Borrow<f64>) -> String {
+    match 100.0 * rate.borrow() {
+        percent if percent > 0.0 && percent < 1e-12 => scientific(percent),
+        percent => trimmed(percent, 12),
+    }
+}
+
 /// Four digits, whatever the size.
 pub fn digits(value: impl Borrow<f64>) -> String {
     let value = *value.borrow();

@@ -42,7 +42,7 @@ pub(super) enum Command {
     Solve(solve::SolveArguments),
     /// Checks a measured force map in CSV and converts it to JSON
     #[command(
-        after_help = "Examples:\n  palpate import-map measured.csv --phantom 4.6 --out gel.json\n  palpate import-map rig.csv --columns 'depth=Z(mm), lateral=X(mm), normal=-Fz[mN]' --skip-rows 3"
+        after_help = "Examples:\n  palpate import-map measured.csv --phantom 4.6 --out gel.json\n  palpate import-map rig.csv --columns 'depth=Z(mm), position=X(mm), normal=-Fz[mN]' --skip-rows 3"
     )]
     ImportMap(import::ImportArguments),
     /// Fits recorded indentations of a gel: where the probe touched it, its moduli, how it relaxes

@@ -85,7 +85,9 @@ impl CliError {
         let tip = tip.map_or(String::new(), |tip| format!(" ({tip})"));
         let message = message.strip_prefix("error: ").unwrap_or(&message);
         if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-            return CliError::Usage("no command; try 'palpate run' or 'palpate --help'".into());
+            let usage = text.split("Usage: ").nth(1).unwrap_or_default();
+            let command = usage.split(['<', '[']).next().unwrap_or_default().trim();
+            return CliError::Usage(format!("no command; try '{command} --help'"));
         }
         CliError::Usage(format!("{message}{tip}; see --help"))
     }

@@ -59,7 +59,7 @@ struct MotionArguments {
     #[arg(long = "tremor-mm", value_name = "A", value_parser = length_or_zero, allow_hyphen_values = true, default_value = "0")]
     tremor: f64,
     /// Frequency of the tremor
-    #[arg(long, value_name = "HZ", value_parser = at_least_0, allow_hyphen_values = true, default_value = "10")]
+    #[arg(long, value_name = "HZ", value_parser = at_least_0, allow_hyphen_values = true, default_value = "10", requires = "tremor")]
     tremor_hz: f64,
     /// Share of the force that relaxes, and its time constant in s
     #[arg(long, value_name = "G,S", value_parser = several::<2>, allow_hyphen_values = true)]
@@ -75,7 +75,7 @@ struct SensorArguments {
     #[command(flatten)]
     noise_sd: NoiseSd,
     /// Correlation of the noise of neighbouring samples
-    #[arg(long, value_name = "R", value_parser = share_below_1, allow_hyphen_values = true, default_value = "0")]
+    #[arg(long, value_name = "R", value_parser = share_below_1, allow_hyphen_values = true, default_value = "0", requires = "NoiseSd")]
     correlation: f64,
     /// Standard deviation of the offset of each force from record to record, in N
     #[arg(long, value_name = "S", value_parser = newtons_or_zero, allow_hyphen_values = true, default_value = "0")]
@@ -87,7 +87,8 @@ struct SensorArguments {
     #[arg(long, value_name = "Q", value_parser = newtons_or_zero, allow_hyphen_values = true, default_value = "0")]
     resolution_n: f64,
     /// Standard deviation of the error of each measured depth, in mm
-    #[arg(long = "depth-noise-mm", value_name = "S", value_parser = length_or_zero, allow_hyphen_values = true, default_value = "0")]
+    #[arg(long = "depth-noise-mm", value_name = "S", value_parser = length_or_zero, allow_hyphen_values = true, default_value = "0",
+          conflicts_with = "no_depths")]
     depth_noise: f64,
     /// Writes no column depth_mm; give 'palpate detect' the depth with --depth-mm
     #[arg(long)]

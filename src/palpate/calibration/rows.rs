@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 use super::{Calibration, CurveCause, Elastic, Interval, Relaxation};
 use crate::refusal::Refusal;
 use crate::rows::Rows;
+use crate::text::digits;
 
 /// Seconds after which it is said what is left of a force.
 const AFTER: [f64; 3] = [1.0, 3.0, 10.0];
@@ -29,7 +30,11 @@ impl Calibration<'_> {
         }
         let at = (curve.forces().iter().zip(curve.depths())).max_by(|a, b| a.0.total_cmp(b.0));
         if let Some((force, depth)) = at {
-            let text = format!("{force:.4}, at {:.3} mm of the curve", 1e3 * depth);
+            let size = match force.abs() < 0.1 {
+                true => digits(force),
+                false => format!("{force:.4}"),
+            };
+            let text = format!("{size}, at {:.3} mm of the curve", 1e3 * depth);
             let value = json!({"force_n": force, "depth_m": depth});
             rows.shown("highest_force", "highest force, N", value, text);
         }

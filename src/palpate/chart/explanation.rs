@@ -126,10 +126,14 @@ fn points<'a>(record: &'a Record, forces: &'a [f64]) -> impl Iterator<Item = (f6
     pairs.map(|(x, force)| (1e3 * x, *force))
 }
 
+/// What is less is rounding.
+const LEAST: f64 = 1e-12;
+
 /// A range with some room at both ends.
 pub(super) fn roomy(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let [low, high] = extremes(values).unwrap_or_default();
-    let room = (0.05 * (high - low)).max(1e-6);
+    let size = low.abs().max(high.abs());
+    let room = (0.05 * (high - low)).max(1e-6 * size).max(LEAST);
     match room.is_finite() {
         true => [low - room, high + room],
         false => [-1.0, 1.0],
@@ -182,7 +186,7 @@ fn left_panels(record: &Record, answer: &RobustAnswer, at: [usize; 2]) -> Vec<Pa
     });
     let noise_sd = answer.noise_sd[at[0]].into_array()[at[1]].unwrap_or_default();
     let sizes = left.iter().flatten().map(|left| left.abs());
-    let most = 1.05 * sizes.fold(2.0 * noise_sd, f64::max).max(1e-6);
+    let most = 1.05 * sizes.fold(2.0 * noise_sd, f64::max).max(LEAST);
     let x = roomy(record.positions().iter().map(|x| 1e3 * x));
     let panel = |(hypothesis, left): (usize, &Vec<f64>)| {
         let (name, colour) = HYPOTHESES[hypothesis];

@@ -196,29 +196,47 @@ fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResu
         PanelKind::Ranked => (grid, 0),
         PanelKind::ToScale => (TRANSPARENT.stroke_width(0), heights),
     };
-    let number = |value: &f64| trimmed(*value, 6);
+    let number = |range: [f64; 2]| move |value: &f64| tick(*value, range);
+    let [of_x, of_y] = [x, y].map(number);
     chart
         .configure_mesh()
         .x_labels(if panel.ticks.is_empty() { 6 } else { 0 })
         .y_labels(heights)
-        .x_label_formatter(&number)
-        .y_label_formatter(&number)
+        .x_label_formatter(&of_x)
+        .y_label_formatter(&of_y)
         .label_style(text(INK, HPos::Center))
         .axis_style(stroke(INK, 1.0))
         .bold_line_style(grid)
         .light_line_style(TRANSPARENT)
         .set_all_tick_mark_size(place(5))
         .draw()?;
-    for &tick in &panel.ticks {
-        let foot = chart.backend_coord(&(tick, y[0]));
-        let top = chart.backend_coord(&(tick, y[1]));
+    for &at_tick in &panel.ticks {
+        let foot = chart.backend_coord(&(at_tick, y[0]));
+        let top = chart.backend_coord(&(at_tick, y[1]));
         area.draw(&PathElement::new(vec![top, foot], grid))?;
         let end = (foot.0, foot.1 + place(5));
         area.draw(&PathElement::new(vec![foot, end], stroke(INK, 1.0)))?;
         let at = [foot.0 / UNIT, foot.1 / UNIT + 15];
-        write(area, &number(&tick), at, HPos::Center)?;
+        write(area, &of_x(&at_tick), at, HPos::Center)?;
     }
     Ok(chart)
+}
+
+/// The number at a tick of an axis: in full, or by its power of ten where that is too long for its place or leaves no digit.
+///
+/// Implements: REP-031.
+fn tick(value: f64, [low, high]: [f64; 2]) -> String {
+    /// Characters that have a place left of a plot.
+    const MOST: usize = 7;
+    let full = trimmed(value, 6);
+    // Ticks are sums, which miss 0 by rounding.
+    let is_zero = value.abs() <= 1e-9 * (high - low).abs();
+    if is_zero || (full.chars().count() <= MOST && full != "0") {
+        return full;
+    }
+    let power = libm::floor(libm::log10(value.abs()));
+    let mantissa = trimmed(value / libm::pow(10.0, power), 2);
+    format!("{mantissa}e{}", trimmed(power, 0))
 }
 
 fn draw_line(chart: &mut Context<'_>, line: &Line) -> DrawingResult<()> {
@@ -232,7 +250,7 @@ fn draw_line(chart: &mut Context<'_>, line: &Line) -> DrawingResult<()> {
     }
     // A curve of a single point would not be seen.
     let radius = match line.points.len() {
-        1 if line.width > 0.0 => line.dot.max(4),
+        1 if line.width > 0.0 && line.dot == 0 => 4,
         _ => line.dot,
     };
     if radius > 0 {
@@ -304,5 +322,23 @@ mod tests {
         numbers.dedup();
         // 0 stands at both axes.
         assert!(all >= 8 && numbers.len() == all - 1, "{numbers:?}");
+    }
+
+    // Verifies: REP-031.
+    #[test]
+    fn a_number_of_an_axis_is_short_and_none_but_0_reads_0() {
+        for (value, text) in [
+            (0.0, "0"),
+            (-0.25, "−0.25"),
+            (0.00015, "0.00015"),
+            (-0.00015, "−1.5e−4"),
+            (-2e-8, "−2e−8"),
+            (123_456.0, "123456"),
+            (-1.65e9, "−1.65e9"),
+        ] {
+            assert_eq!(tick(value, [-2.0 * value.abs(), 2.0 * value.abs()]), text);
+        }
+        // −0.2 + 0.1 + 0.1, by rounding.
+        assert_eq!(tick(2.8e-17, [-0.2, 0.2]), "0");
     }
 }

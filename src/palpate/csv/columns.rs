@@ -564,7 +564,7 @@ mod tests {
             ),
             (
                 "position=4[mm]",
-                "line 1: column 4 for two quantities in the header",
+                "line 1: column 4 for both position_mm and normal_force_n in the header",
             ),
             ("normal=Last", "line 1: no column \"Last\" in the header"),
             ("normal=5[N]", "line 1: no column \"5\" in the header"),

@@ -63,6 +63,7 @@ impl<const N: usize> Rows<N> {
         let header = header.map_err(|(found, (line, header))| {
             let found = match layout.is_of_objects {
                 true => found.replacen("no column", "no key", 1),
+                false if header.trim().is_empty() => "no header and no rows".into(),
                 false => format!("{found} in the header {:?}", shortened(header.trim())),
             };
             Refusal::state(found, format!("give {expected}")).at(line)
@@ -199,10 +200,13 @@ impl<'a, const N: usize> Header<'a, N> {
                 *found = Some(find(&fields, column, layout)?);
             }
         }
-        let mut places: Vec<usize> = found.iter().flatten().map(|of| of.place).collect();
-        places.sort_unstable();
-        if let Some(twice) = places.windows(2).find(|pair| pair[0] == pair[1]) {
-            return Err(format!("column {} for two quantities", twice[0] + 1));
+        let mut places: Vec<_> = (found.iter().zip(columns))
+            .filter_map(|(of, column)| Some((of.as_ref()?.place, column.first()?.first()?.0)))
+            .collect();
+        places.sort_by_key(|(place, _)| *place);
+        if let Some(twice) = places.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            let ((place, one), (_, other)) = (twice[0], twice[1]);
+            return Err(format!("column {} for both {one} and {other}", place + 1));
         }
         let units = lines.get(at + 1).and_then(|(_, row)| {
             let units: Vec<&str> = split(row, separator).collect();
@@ -423,13 +427,13 @@ pub fn wrong_header(header: &str, expected: &str) -> Refusal {
     )
 }
 
-/// The fields of a row between commas, trimmed, which must be `expected` as in the header.
+/// The fields of a row between commas, as [`split`] finds them, which must be `expected` as in the header.
 pub fn fields<'a>(row: &'a str, expected: usize, header: &str) -> Result<Vec<&'a str>, Refusal> {
-    counted(row.split(',').map(str::trim).collect(), expected, header)
+    counted(split(row, ',').collect(), expected, header)
 }
 
 /// The fields of a row, which must be `expected` as in the header.
-pub fn counted<'a>(
+fn counted<'a>(
     fields: Vec<&'a str>,
     expected: usize,
     header: &str,
@@ -549,10 +553,7 @@ mod tests {
                 let mut columns = [1, 2, 3, 4];
                 columns[one] = columns[other];
                 let refused = stated(columns).err().unwrap();
-                let twice = format!(
-                    "line 1: column {} for two quantities in the header",
-                    columns[other]
-                );
+                let twice = format!("line 1: column {} for both ", columns[other]);
                 assert!(refused.starts_with(&twice), "{refused}");
             }
         }

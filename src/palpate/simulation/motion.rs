@@ -53,6 +53,8 @@ pub struct Tremor {
 const TONES: u64 = 8;
 /// How long the gel's force is held while a hand moves, s; the hand itself moves in ten steps of it.
 const STEP: f64 = 1e-4;
+/// The longest path along which a hand moves, s: some 10⁹ steps, a minute of computing.
+const LONGEST: f64 = 1e4;
 /// How long a hand holds the first place before the first sample, s.
 const SETTLE: f64 = 1.0;
 /// The share of its velocity that damping and stiffness may take from a hand in a step.
@@ -87,6 +89,10 @@ impl Motion {
         };
         hand.check(gel)?;
         let first = samples[0];
+        let duration = samples[samples.len() - 1] - first;
+        let found = format!("a path of {duration:.0} s with a hand");
+        let remedy = format!("give one of at most {LONGEST} s, or a higher speed");
+        Refusal::state(found, remedy).when(duration > LONGEST)?;
         let mut handles = target(first).map(|place| Handle::at(hand.mechanics(), place));
         let mut places = Vec::with_capacity(samples.len());
         // Of the first sample: a step would round beside a large time.

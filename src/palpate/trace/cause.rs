@@ -50,7 +50,7 @@ impl fmt::Display for Cause {
             Cause::Level => "the forces are too large for the maps' gel at this depth: take maps of this gel, depth and probe",
             Cause::Misfit => "no hypothesis explains the forces, or the noise is not as stated: state the noise of a sample in N, take less as known, or take other maps",
             Cause::Coloured => "the noise of neighbouring samples is correlated, and the exact model needs white noise: use the robust model",
-            Cause::Saturated => "many samples are at the end of the sensor's range: use a sensor with a larger range",
+            Cause::Saturated => "many samples are at the end of the sensor's range: use a sensor with a larger range, or check that it still measures",
             Cause::Glitches => "too many samples are far from their neighbours: check the cable, or leave those samples out",
             Cause::NoContact => "the forces are too small for the maps' gel at this depth: check that the probe touches, or say that the sensor was set to zero on the gel",
             Cause::InAir => "samples at the start or at the end are in air: leave them out",

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use super::counts::{Column, Condition, MOST_TRIALS, Subject, columns, plain, refused};
 use super::trials;
-use palpate::csv::{fields, header_and_rows, wrong_header};
+use palpate::csv::{fields, header_and_rows, split, wrong_header};
 use palpate::refusal::Refusal;
 
 /// Table 1.
@@ -115,7 +115,7 @@ impl AnswerTable {
 
 /// The inclusions that a header names.
 fn inclusions(header: &str) -> Result<Vec<Column>, Refusal> {
-    let fields: Vec<&str> = header.split(',').map(str::trim).collect();
+    let fields: Vec<&str> = split(header, ',').collect();
     let rest = fields.strip_prefix(&KEYS).filter(|rest| !rest.is_empty());
     let names = rest.ok_or_else(|| wrong_header(header, EXPECTED_HEADER))?;
     let place = |(number, &name)| (format!("header, column {number}"), name);

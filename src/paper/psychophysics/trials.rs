@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::counts::{Column, MOST_TRIALS, Subject, column, plain, refused};
-use palpate::csv::{counted, split};
+use palpate::csv::{fields, split};
 use palpate::refusal::Refusal;
 
 /// What the columns hold: who answered, what was felt, the inclusion of the pair, whether the answer was right. Of each the names, and
@@ -97,7 +97,7 @@ pub(super) fn counts<'a>(
     let mut found: Vec<(usize, [String; 2], Counts)> = Vec::new();
     let mut known: HashMap<[String; 2], usize> = HashMap::new();
     for (line, row) in rows {
-        let fields = counted(split(row, ',').collect(), width, header);
+        let fields = fields(row, width, header);
         let fields = fields.map_err(|refusal| refusal.at(line))?;
         let [subject, condition, inclusion, answer] = places.map(|place| fields[place]);
         if answer.is_empty() {

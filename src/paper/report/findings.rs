@@ -14,7 +14,7 @@ use crate::psychophysics::bridge::{Bridge, probe_depth};
 use crate::psychophysics::{
     Analysis, AnswerTable, NoiseDecomposition, analyse, paper_noise_levels,
 };
-use palpate::detect::{DetectError, map_threshold, required_gamma};
+use palpate::detect::{DetectError, map_threshold};
 use palpate::force_map::ForceMap;
 use palpate::refusal::Refusal;
 
@@ -116,5 +116,5 @@ pub fn findings(run: &Run) -> Result<Findings, Refusal> {
 fn check(settings: &Settings) -> Result<f64, DetectError> {
     gamma(&[0.0], &[0.0], settings.noise_sd_n)?;
     map_threshold(settings.prior_h1)?;
-    required_gamma(settings.max_false_alarm, settings.max_miss)
+    settings.required_gamma()
 }

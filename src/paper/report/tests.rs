@@ -304,10 +304,11 @@ fn what_does_not_fit_is_refused() {
     let other = map(Phantom::builtin("4.6").ok(), &[0.0, 4e-3], |_| 0.0, |_| 0.0);
     refused(vec![other], "\"4.6\"|depths_m", |_| ());
     type Damage = fn(&mut Settings);
-    let damaged: [(&str, Damage); 5] = [
+    let damaged: [(&str, Damage); 6] = [
         ("noise_sd", |settings| settings.noise_sd_n = 0.0),
         ("noise_sd", |settings| settings.noise_sd_n = f64::NAN),
         ("max_miss", |settings| settings.max_miss = 1.0),
+        ("max_miss", |settings| settings.max_miss = 0.96),
         ("max_false_alarm", |settings| {
             settings.max_false_alarm = f64::NAN
         }),

@@ -103,7 +103,7 @@ pub fn percent(probability: impl Borrow<f64>) -> String {
 
 /// A rate that was asked for, in per cent.
 pub(super) fn rate(rate: impl Borrow<f64>) -> String {
-    format!("{}\u{a0}%", trimmed(100.0 * rate.borrow(), 6))
+    format!("{}\u{a0}%", in_percent(rate))
 }
 
 /// An error rate: small ones by their power of ten.

@@ -33,7 +33,7 @@ pub use results::{Conclusion, Failure, QuantityResult, Slope, StudyResults};
 pub use sample::{Kind, Quantity, Sampler};
 
 use crate::settings::Settings;
-use palpate::detect::{map_threshold, required_gamma};
+use palpate::detect::map_threshold;
 use palpate::fem::Contact;
 use palpate::phantom::Phantom;
 use palpate::refusal::Refusal;
@@ -135,8 +135,7 @@ impl StudyPlan {
     /// # Errors
     /// Rates that no γ keeps.
     pub fn required_gamma(&self) -> Result<f64, Refusal> {
-        let settings = self.settings;
-        Ok(required_gamma(settings.max_false_alarm, settings.max_miss)?)
+        Ok(self.settings.required_gamma()?)
     }
 
     /// A phantom with the values of the inputs, of those whose keys it has.

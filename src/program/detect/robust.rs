@@ -156,10 +156,12 @@ fn depths(arguments: &DetectArguments, of_bank: f64, sweeps: usize) -> Result<Ve
         depths => depths,
     };
     let Some(each) = for_each(depths, sweeps) else {
-        let (count, of) = (depths.len(), if sweeps == 1 { "sweep" } else { "sweeps" });
-        refuse!(
-            "--depth-mm has {count} depths for {sweeps} {of} of a place; give one, or one for each"
-        )
+        let (of, other) = match sweeps {
+            1 => ("sweep", "--together for several sweeps of a place"),
+            _ => ("sweeps", "one for each"),
+        };
+        let count = depths.len();
+        refuse!("--depth-mm has {count} depths for {sweeps} {of} of a place; give one, or {other}")
     };
     Ok(each)
 }

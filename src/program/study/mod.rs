@@ -30,8 +30,10 @@ pub struct StudyArguments {
 #[derive(Debug, Subcommand)]
 enum Action {
     /// Computes the samples, all of them or one shard; continues an aborted run
+    #[command(after_help = "Example:\n  palpate study run study.toml --out samples --shard 1/4")]
     Run(StudyRunArguments),
     /// Merges the samples of all shards and analyses them: uncertainty bands and sensitivity indices
+    #[command(after_help = "Example:\n  palpate study merge samples --out study.json")]
     Merge(MergeArguments),
 }
 

@@ -1,5 +1,6 @@
 //! The samples of a study in files: one for each shard, a line for each sample.
 
+use std::collections::HashSet;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::ops::Range;
@@ -226,6 +227,9 @@ impl Records {
 fn sample_files(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
     let mut all = Vec::new();
     for folder in folders {
+        if folder.is_file() {
+            refuse!("{}: a file; give its folder", folder.display());
+        }
         let mut files = files_in(folder, |path| {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             name.starts_with("samples-") && name.ends_with(".jsonl")
@@ -238,6 +242,9 @@ fn sample_files(folders: &[PathBuf]) -> Result<Vec<PathBuf>, CliError> {
         }
         all.append(&mut files);
     }
+    // A folder may be named twice, in two ways.
+    let mut seen = HashSet::new();
+    all.retain(|file| seen.insert(file.canonicalize().unwrap_or_else(|_| file.clone())));
     Ok(all)
 }
 

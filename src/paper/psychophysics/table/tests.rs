@@ -22,6 +22,19 @@ const TYPED_AGAIN: [(&str, [[u32; 4]; 10]); 3] = [
 
 // Verifies: PSY-020.
 #[test]
+fn fields_may_stand_in_quotes() {
+    let plain = "subject,condition,trials,2.6,4.6\n1,a; b,30,30,28\n2,a; b,30,29,25\n";
+    let read = |text: &str| AnswerTable::from_csv(text, "counts.csv").unwrap();
+    let all = "\"subject\",\"condition\",\"trials\",\"2.6\",\"4.6\"\n\"1\",\"a; b\",30,30,28\n\"2\",\"a; b\",30,29,25\n";
+    assert_eq!(read(all), read(plain));
+    assert_eq!(read(&plain.replacen("a; b", "\"a; b\"", 1)), read(plain));
+    // A comma between quotation marks separates no fields.
+    let comma = plain.replace("a; b", "\"a, b\"");
+    assert_eq!(read(&comma).conditions()[0].name, "a, b");
+}
+
+// Verifies: PSY-020.
+#[test]
 fn table_1_is_built_in() {
     let table = AnswerTable::paper().unwrap();
     let depths: Vec<f64> = table.inclusions().iter().map(|i| i.depth).collect();
