@@ -234,7 +234,7 @@ impl Watcher {
         }
         let is_known = depth.is_some() || self.depths.len() == 1;
         let needed =
-            "given with each sample, as depth_mm, as the bank has several depths of the probe";
+            "given with each sample (depth_mm), as the bank has several depths of the probe";
         in_range(is_known, "depth", f64::NAN, needed)?;
         if numbers.iter().any(|number| number.is_nan()) {
             self.counts.missing += 1;

@@ -234,9 +234,9 @@ fn tick(value: f64, [low, high]: [f64; 2]) -> String {
     if is_zero || (full.chars().count() <= MOST && full != "0") {
         return full;
     }
-    let power = libm::floor(libm::log10(value.abs()));
-    let mantissa = trimmed(value / libm::pow(10.0, power), 2);
-    format!("{mantissa}e{}", trimmed(power, 0))
+    // Three digits, without the zeros behind them.
+    let rounded = format!("{value:.2e}").parse().unwrap_or(value);
+    format!("{rounded:e}").replace('-', "−")
 }
 
 fn draw_line(chart: &mut Context<'_>, line: &Line) -> DrawingResult<()> {
@@ -307,6 +307,10 @@ mod tests {
             [dots(vec![(0.5, 0.5)]), dots(vec![(0.5, 0.5), (1.0, 0.5)])],
             [1, 0]
         );
+        let line = Line::new(INK, vec![(0.5, 0.5)]).dotted(2);
+        let panel = Panel::new("F (N)", [[0.0, 1.0]; 2], 200, vec![line]);
+        let svg = chart(&[panel], ["a", "b", "c"]).unwrap();
+        assert!(svg.contains(&format!("r=\"{}\"", 2 * UNIT)), "{svg}");
     }
 
     // Verifies: REP-031.
@@ -335,6 +339,8 @@ mod tests {
             (-2e-8, "−2e−8"),
             (123_456.0, "123456"),
             (-1.65e9, "−1.65e9"),
+            (-1e-5, "−1e−5"),
+            (9.999e-8, "1e−7"),
         ] {
             assert_eq!(tick(value, [-2.0 * value.abs(), 2.0 * value.abs()]), text);
         }

@@ -130,14 +130,6 @@ impl StudyPlan {
         std::iter::once(&self.reference).chain(&self.phantoms)
     }
 
-    /// The γ that keeps both error rates.
-    ///
-    /// # Errors
-    /// Rates that no γ keeps.
-    pub fn required_gamma(&self) -> Result<f64, Refusal> {
-        Ok(self.settings.required_gamma()?)
-    }
-
     /// A phantom with the values of the inputs, of those whose keys it has.
     ///
     /// # Errors
@@ -163,7 +155,7 @@ impl StudyPlan {
     ///
     /// Implements: STU-001, STU-011.
     pub fn design(&self) -> Result<Design, Refusal> {
-        self.required_gamma()?;
+        self.settings.required_gamma()?;
         map_threshold(self.settings.prior_h1)?;
         let phantoms: Vec<&str> = self.all_phantoms().map(|phantom| phantom.name()).collect();
         let names: Vec<&str> = self.inputs.iter().map(|input| &*input.name).collect();

@@ -249,7 +249,7 @@ impl Column<'_> {
     /// Implements: STU-043.
     fn conclusion(&self, quantity: &Quantity) -> Result<Option<Conclusion>, Refusal> {
         let (limit, at_least) = match quantity.kind {
-            Kind::Gamma => (self.sampler.plan().required_gamma()?, true),
+            Kind::Gamma => (self.sampler.plan().settings.required_gamma()?, true),
             Kind::ConventionP { .. } => (LEVEL, false),
             _ => return Ok(None),
         };

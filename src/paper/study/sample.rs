@@ -118,7 +118,7 @@ impl<'a> Sampler<'a> {
             design,
             quantities,
             answers,
-            needed: plan.required_gamma()?,
+            needed: plan.settings.required_gamma()?,
         })
     }
 

@@ -40,6 +40,7 @@ fn the_bound_is_the_sum_of_the_tails_and_keeps_the_rate() {
     let found = alarms(&detector, eta, &[0.0; SAMPLES], 5, 20_000);
     assert!(clopper_pearson(found, 20_000, 0.999_999).unwrap().lower < 0.01);
     assert!(false_alarm_threshold(&tests, 0.0).is_err());
+    assert!(false_alarm_threshold(&[], 0.01).is_err());
 }
 
 // Verifies: BNK-053.
