@@ -23,7 +23,10 @@ const BUDGET: f64 = 1e6;
 fn main() -> ExitCode {
     // An estimate of an earlier run is none of this one.
     let _ = std::fs::remove_file(estimates());
-    let mut criterion = Criterion::default().configure_from_args();
+    let mut criterion = Criterion::default()
+        .warm_up_time(Duration::from_secs(1))
+        .measurement_time(Duration::from_secs(2))
+        .configure_from_args();
     let paper = PaperTable::default();
     let table = paper.table().expect("the table is valid");
     let limits = Limits::for_playback(4.0, PAPER.period_us).expect("the limits are valid");

@@ -147,6 +147,19 @@ fn a_curve_that_cannot_be_judged_writes_no_phantom() {
     assert!(text(&output.stdout).contains("cannot be judged"));
     assert!(!place.at("gel.toml").exists());
     assert!(place.read("both.svg").contains("press deeper"));
+    // Twice as strong: another curve, which cannot be judged either.
+    let rows = (0..100).map(|k| format!("{},{}\n", 0.05 * f64::from(k), 2e-3 * f64::from(k % 7)));
+    let rows = format!("depth_mm,normal_force_n\n{}", rows.collect::<String>());
+    place.write("more.csv", rows);
+    let output = place.run("calibrate air.csv demo/curve.csv more.csv --phantom none");
+    assert_eq!(output.status.code(), Some(3), "{}", text(&output.stderr));
+    let message =
+        "palpate: 2 of 3 curves cannot be judged: air.csv, more.csv; the answer of each says why\n";
+    assert!(
+        text(&output.stderr).ends_with(message),
+        "{}",
+        text(&output.stderr)
+    );
 }
 
 // Verifies: CLI-015, CLI-003, CLI-176.

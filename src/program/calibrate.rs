@@ -204,8 +204,9 @@ fn tell(
     answer.value("curves", json!(rows));
     let bad = found
         .iter()
-        .find_map(|of| Some((of.curve.file(), of.cause?)));
-    if bad.is_none() && found.len() > 1 && !moduli.is_empty() {
+        .filter_map(|of| Some((of.curve.file(), of.cause?)));
+    let bad: Vec<_> = bad.collect();
+    if bad.is_empty() && found.len() > 1 && !moduli.is_empty() {
         let mut all = Rows::default();
         modulus_row(&mut all, "all curves: Young's modulus, kPa", &moduli);
         table.push(all.table());
@@ -216,9 +217,20 @@ fn tell(
     }
     let answer = Envelope::new("palpate-calibration", 1, answer);
     arguments.format.print(&answer, || table.concat())?;
-    if let Some((file, cause)) = bad {
-        let message = format!("{file}: cannot be judged: {}", cause.in_words());
-        return Err(CliError::Unjudged(message));
+    let unjudged = |message| Err(CliError::Unjudged(message));
+    match &bad[..] {
+        [] => {}
+        [(file, cause)] => {
+            return unjudged(format!("{file}: cannot be judged: {}", cause.in_words()));
+        }
+        [..] => {
+            let files: Vec<_> = bad.iter().map(|(file, _)| *file).collect();
+            let (files, of) = (files.join(", "), found.len());
+            let many = bad.len();
+            return unjudged(format!(
+                "{many} of {of} curves cannot be judged: {files}; the answer of each says why"
+            ));
+        }
     }
     if let (Some(path), Some(phantom)) = (&arguments.out, phantom) {
         write(path, &calibrated(phantom, layers, &moduli)?.to_toml())?;
@@ -226,10 +238,13 @@ fn tell(
     if let Some(path) = &arguments.uncertainty_out {
         let percents = found.iter().map(Calibration::depth_percent);
         // All contacts were estimated.
-        let percents = percents.collect::<Result<Vec<_>, _>>()?;
-        let percent = percents.into_iter().flatten().fold(0.0, f64::max);
+        let percents = percents.collect::<Result<Vec<_>, _>>()?.into_iter();
+        let largest = percents.flatten().max_by(|a, b| a[0].total_cmp(&b[0]));
+        let [percent, depth] = largest.unwrap_or_default();
+        let depth = 1e3 * depth;
         let text = format!(
-            "# From the contact that palpate calibrate estimated.\ndepth_percent = {percent:.3}\n"
+            "# From the contact that palpate calibrate estimated, at a depth of {depth:.3} mm. At half of it, write twice as much.\n\
+             depth_percent = {percent:.3}\n"
         );
         write(path, &text)?;
     }

@@ -720,19 +720,20 @@ impl<'a> Calibration<'a> {
             .collect())
     }
 
-    /// The standard deviation of the depth of a probe that is set by this contact, in percent of the greatest depth; none where the contact
-    /// was not estimated.
+    /// The standard deviation of the depth of a probe that is set by this contact, in percent of the greatest depth, and that depth, m; none
+    /// where the contact was not estimated.
     ///
     /// # Errors
     /// As [`Calibration::contact`].
     ///
     /// Implements: CAL-035.
-    pub fn depth_percent(&self) -> Result<Option<f64>, Refusal> {
+    pub fn depth_percent(&self) -> Result<Option<[f64; 2]>, Refusal> {
         let contact = self.contact()?.filter(|_| self.known.contact.is_none());
         Ok(contact.map(|of| {
             // 95 % of a normal law are within 1.96 standard deviations.
             let sd = 0.5 * (of.ends[1] - of.ends[0]) / 1.96;
-            100.0 * sd / (self.curve.deepest() - of.estimate)
+            let depth = self.curve.deepest() - of.estimate;
+            [100.0 * sd / depth, depth]
         }))
     }
 }

@@ -335,7 +335,7 @@ mod tests {
             (0.0, "0"),
             (-0.25, "−0.25"),
             (0.00015, "0.00015"),
-            (-0.00015, "−1.5e−4"),
+            (-0.000125, "−1.25e−4"),
             (-2e-8, "−2e−8"),
             (123_456.0, "123456"),
             (-1.65e9, "−1.65e9"),
@@ -343,6 +343,8 @@ mod tests {
             (9.999e-8, "1e−7"),
         ] {
             assert_eq!(tick(value, [-2.0 * value.abs(), 2.0 * value.abs()]), text);
+            // 5 pixels of the mark at the tick, 5 beside it.
+            assert!(text_width(text) + 10 <= LEFT, "{text}");
         }
         // −0.2 + 0.1 + 0.1, by rounding.
         assert_eq!(tick(2.8e-17, [-0.2, 0.2]), "0");

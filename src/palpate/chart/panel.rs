@@ -18,7 +18,7 @@ pub type Context<'a> =
     ChartContext<'a, SVGBackend<'a>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Pixels left of a plot for the numbers of its y axis.
-pub const LEFT: i32 = 58;
+pub const LEFT: i32 = 80;
 /// Pixels right of a plot, where nothing stands there.
 pub const RIGHT: i32 = 24;
 

@@ -228,7 +228,9 @@ fn listed<T: Copy + Display>(
     };
     if let Some(name) = listed.iter().find(|name| !names.contains(name)) {
         let names = names.join(", ");
-        return Err(format!("{name:?} is none of {names}, all and none"));
+        return Err(format!(
+            "{name:?} is none of {names}; give a list of these, all or none"
+        ));
     }
     let is_listed = |of: &T| listed.contains(&of.to_string());
     Ok(all.into_iter().filter(is_listed).collect())

