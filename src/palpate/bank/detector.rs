@@ -45,6 +45,20 @@ pub(crate) fn likeliest(theta: &[f64], points: impl Iterator<Item = usize>) -> O
     })
 }
 
+/// The probability of each hypothesis if one is true: π_k exp(θ_k), over the sum of all.
+pub(crate) fn shares(theta: &[f64], prior: &[f64]) -> Vec<f64> {
+    let may_be = (0..theta.len()).filter(|&number| prior[number] > 0.0);
+    // As in the mixture: no exponent of a hypothesis that may be true is above 0.
+    let largest = likeliest(theta, may_be).map_or(0.0, |number| theta[number]);
+    let weight = |(prior, theta): (&f64, &f64)| match *prior {
+        0.0 => 0.0,
+        prior => prior * libm::exp(theta - largest),
+    };
+    let weights: Vec<f64> = prior.iter().zip(theta).map(weight).collect();
+    let whole: f64 = weights.iter().sum();
+    weights.iter().map(|weight| weight / whole).collect()
+}
+
 /// What a record says of each point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BankStatistic {

@@ -32,8 +32,8 @@ mod reach;
 mod tests;
 mod watch;
 
-pub(crate) use detector::likeliest;
 pub use detector::{BankDetector, BankStatistic};
+pub(crate) use detector::{likeliest, shares};
 pub use file::{SCHEMA, SCHEMA_VERSION};
 pub use information::PlaceBound;
 pub use locate::{BankSearch, Location, SearchThreshold};

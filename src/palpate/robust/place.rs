@@ -2,7 +2,7 @@
 
 use super::evidence::log_sum;
 use super::{AMPLITUDE, AMPLITUDE_OF_DIAMETERS, RobustAnswer, RobustSignal, RobustSweep};
-use crate::bank::Bank;
+use crate::bank::{Bank, shares};
 use crate::force_map::{ForceMap, SAME_POSITION};
 use crate::refusal::Refusal;
 
@@ -128,20 +128,17 @@ impl<'a> BankHypotheses<'a> {
     ///
     /// Implements: ROB-041, ROB-042.
     pub fn place(&self, answer: &RobustAnswer) -> RobustPlace {
-        let logs: Vec<f64> = (self.of.iter().zip(&answer.thetas))
-            .map(|((_, prior), theta)| libm::log(*prior) + theta)
-            .collect();
-        let whole = logs.iter().copied().fold(f64::NEG_INFINITY, log_sum);
-        let all = self.of.iter().zip(&logs);
-        let singles = all.filter(|((maps, _), _)| maps.len() == 1);
-        let logs_of_one = singles.clone().map(|(_, log)| *log);
-        let of_one = logs_of_one.fold(f64::NEG_INFINITY, log_sum);
+        let priors: Vec<f64> = self.of.iter().map(|(_, prior)| *prior).collect();
+        // Those of one inclusion come first.
+        let ones = self.of.iter().filter(|(maps, _)| maps.len() == 1).count();
+        let thetas_of_one = &answer.thetas[..ones.min(answer.thetas.len())];
+        let of_one = shares(thetas_of_one, &priors);
         let marginals = [0, 1, 2, 3].map(|number: usize| {
             let values = &self.bank.axes()[number];
             let mut along = vec![0.0; values.len()];
-            for ((maps, _), log) in singles.clone() {
+            for ((maps, _), share) in self.of.iter().zip(&of_one) {
                 let value = self.bank.point(maps[0])[number];
-                along[values.partition_point(|of| *of < value)] += libm::exp(log - of_one);
+                along[values.partition_point(|of| *of < value)] += share;
             }
             along
         });
@@ -152,7 +149,11 @@ impl<'a> BankHypotheses<'a> {
         RobustPlace {
             intervals: [0, 1, 2, 3].map(axis),
             marginals,
-            several: (1.0 - libm::exp(of_one - whole)).max(0.0),
+            several: shares(&answer.thetas, &priors)
+                .iter()
+                .skip(ones)
+                .sum::<f64>()
+                .min(1.0),
             none_down_to: self
                 .none_down_to(&answer.thetas)
                 .filter(|_| !self.is_zeroed && !answer.is_none_doubtful),

@@ -597,6 +597,17 @@ fn an_inclusion_is_found_where_it_is_and_none_where_there_is_none() {
     assert_eq!(found.several, 1.0);
     let at = found.intervals[1].unwrap().estimate;
     assert_near(at, bank.point(0)[1], 1e-12);
+    // However large θ is, the shares add up to 1 but for some roundings of 10⁻¹⁶.
+    let thetas = (0..answer.thetas.len()).map(|hypothesis| 1e6 + 0.1 * hypothesis as f64);
+    let large = RobustAnswer {
+        thetas: thetas.collect(),
+        ..answer.clone()
+    };
+    let found = hypotheses.place(&large);
+    assert!((0.0..=1.0).contains(&found.several), "{}", found.several);
+    for shares in &found.marginals {
+        assert_near(shares.iter().sum(), 1.0, 1e-14);
+    }
     for hypothesis in [0, 1] {
         let shares = answer.classes.iter().map(|(_, shares)| shares[hypothesis]);
         assert_near(shares.sum(), 1.0, 1e-12);

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::{List, Refused, Rows, answer};
-use crate::bank::likeliest;
+use crate::bank::{likeliest, shares};
 use crate::detect::mixture::mixture_theta;
 use crate::detect::nuisance::{NoiseLevel, Nuisances, SubspaceDetector};
 use crate::detect::{DetectError, posterior};
@@ -96,20 +96,6 @@ fn theta_of(
     let found = detector.statistic(&mut residual.to_vec())?;
     let theta = found.test(level, 0.0)?.theta();
     representable("theta", theta).map(Some)
-}
-
-/// The probability of each hypothesis if one is true: π_k exp(θ_k), over the sum of all.
-fn shares(theta: &[f64], prior: &[f64]) -> Vec<f64> {
-    let may_be = (0..theta.len()).filter(|&number| prior[number] > 0.0);
-    // As in the mixture: no exponent of a hypothesis that may be true is above 0.
-    let largest = likeliest(theta, may_be).map_or(0.0, |number| theta[number]);
-    let weight = |(prior, theta): (&f64, &f64)| match *prior {
-        0.0 => 0.0,
-        prior => prior * libm::exp(theta - largest),
-    };
-    let weights: Vec<f64> = prior.iter().zip(theta).map(weight).collect();
-    let whole: f64 = weights.iter().sum();
-    weights.iter().map(|weight| weight / whole).collect()
 }
 
 /// How the noise is known.
