@@ -264,6 +264,7 @@ time="2.5"/> ¦ ><failure/></testcase> ¦ small-one::slow waits failed (AAA-002)
 tests/hid-stack/run ¦ tests/hid-stack/ran ¦ tests/hid-stack/run held_up did not run (AAA-001), tests/hid-stack/run lost did not run (AAA-002)
 proofs/bound.g ¦ proofs/bound.gg ¦ proofs/bound.g did not run (AAA-003)
 passed\t7 ¦ began\t7 ¦ proofs/bound.g did not run (AAA-003)
+passed\t7 ¦ failed\t7 ¦ proofs/bound.g failed (AAA-003)
 --bench quick ¦ --bench quicker ¦ benches/quick.rs did not run (AAA-003)
 "#;
 

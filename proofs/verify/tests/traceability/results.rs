@@ -63,6 +63,7 @@ impl Results {
             };
             let end = match word {
                 "passed" => End::Passed,
+                "failed" => End::Failed,
                 "left" => End::Left,
                 _ => {
                     self.facts.insert(word.into(), what.into());
