@@ -397,6 +397,7 @@ fn a_lateral_force_that_is_not_what_it_is_said_to_be_hides_no_inclusion() {
 // A prior is no reason to doubt the lateral forces: with 1 in 1000, "no inclusion" may follow from a record that favours one by both channels.
 // Verifies: ROB-009.
 #[test]
+#[ignore = "slow, and rarely breaks"]
 fn a_low_prior_blames_no_channel() {
     let bank = bank();
     let table = at_depth(disc_of(&bank));
