@@ -18,6 +18,7 @@ use palpate::calibration::{
 use palpate::chart::calibration_figure;
 use palpate::fem::MESH_SIZE;
 use palpate::phantom::Phantom;
+use palpate::refusal::Refusal;
 use palpate::rows::Rows;
 
 /// Arguments of `palpate calibrate`.
@@ -118,10 +119,9 @@ pub fn calibrate(arguments: &CalibrateArguments) -> Result<(), CliError> {
 ///
 /// Implements: CLI-015, CLI-003.
 fn strain(of: &Calibration<'_>) -> Result<(), CliError> {
-    let (Elastic::Gel(gel), Some(contact)) = (&of.elastic, of.contact()?) else {
+    let (Elastic::Gel(gel), Some(deepest)) = (&of.elastic, of.greatest_depth()?) else {
         return Ok(());
     };
-    let deepest = of.curve.deepest() - contact.estimate;
     tell_large_strain_to(deepest, &gel.map, gel.phantom.name())
 }
 
@@ -179,6 +179,27 @@ fn tell_far_moduli(phantom: &Phantom, layers: &[usize], moduli: &[(String, Inter
     }
 }
 
+/// Says which curves cannot be judged, and why if it is one.
+fn unjudged(found: &[Calibration<'_>]) -> Option<String> {
+    let bad = found
+        .iter()
+        .filter_map(|of| Some((of.curve.file(), of.cause?)));
+    let bad: Vec<_> = bad.collect();
+    match bad[..] {
+        [] => None,
+        [(file, cause)] => Some(format!("{file}: cannot be judged: {}", cause.in_words())),
+        [..] => {
+            let files: Vec<_> = bad.iter().map(|(file, _)| *file).collect();
+            Some(format!(
+                "{} of {} curves cannot be judged: {}; the answer of each says why",
+                bad.len(),
+                found.len(),
+                files.join(", ")
+            ))
+        }
+    }
+}
+
 /// Prints the answers; writes what was found if all curves could be judged, else fails.
 ///
 /// Implements: CLI-176.
@@ -202,11 +223,8 @@ fn tell(
     let mut answer = Rows::default();
     answer.value("phantom", json!(arguments.phantom));
     answer.value("curves", json!(rows));
-    let bad = found
-        .iter()
-        .filter_map(|of| Some((of.curve.file(), of.cause?)));
-    let bad: Vec<_> = bad.collect();
-    if bad.is_empty() && found.len() > 1 && !moduli.is_empty() {
+    let unjudged = unjudged(found);
+    if unjudged.is_none() && found.len() > 1 && !moduli.is_empty() {
         let mut all = Rows::default();
         modulus_row(&mut all, "all curves: Young's modulus, kPa", &moduli);
         table.push(all.table());
@@ -217,30 +235,21 @@ fn tell(
     }
     let answer = Envelope::new("palpate-calibration", 1, answer);
     arguments.format.print(&answer, || table.concat())?;
-    let unjudged = |message| Err(CliError::Unjudged(message));
-    match &bad[..] {
-        [] => {}
-        [(file, cause)] => {
-            return unjudged(format!("{file}: cannot be judged: {}", cause.in_words()));
-        }
-        [..] => {
-            let files: Vec<_> = bad.iter().map(|(file, _)| *file).collect();
-            let (files, of) = (files.join(", "), found.len());
-            let many = bad.len();
-            return unjudged(format!(
-                "{many} of {of} curves cannot be judged: {files}; the answer of each says why"
-            ));
-        }
+    if let Some(message) = unjudged {
+        return Err(CliError::Unjudged(message));
     }
     if let (Some(path), Some(phantom)) = (&arguments.out, phantom) {
         write(path, &calibrated(phantom, layers, &moduli)?.to_toml())?;
     }
     if let Some(path) = &arguments.uncertainty_out {
-        let percents = found.iter().map(Calibration::depth_percent);
+        let percent = |of: &Calibration| Ok(of.depth_percent()?.zip(of.greatest_depth()?));
+        let percents = found
+            .iter()
+            .map(percent)
+            .collect::<Result<Vec<_>, Refusal>>()?;
         // All contacts were estimated.
-        let percents = percents.collect::<Result<Vec<_>, _>>()?.into_iter();
-        let largest = percents.flatten().max_by(|a, b| a[0].total_cmp(&b[0]));
-        let [percent, depth] = largest.unwrap_or_default();
+        let largest = (percents.into_iter().flatten()).max_by(|a, b| a.0.total_cmp(&b.0));
+        let (percent, depth) = largest.unwrap_or_default();
         let depth = 1e3 * depth;
         let text = format!(
             "# From the contact that palpate calibrate estimated, at a depth of {depth:.3} mm. At half of it, write twice as much.\n\

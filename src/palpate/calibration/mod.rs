@@ -720,21 +720,28 @@ impl<'a> Calibration<'a> {
             .collect())
     }
 
-    /// The standard deviation of the depth of a probe that is set by this contact, in percent of the greatest depth, and that depth, m; none
-    /// where the contact was not estimated.
+    /// The greatest depth of the curve below the contact, m.
+    ///
+    /// # Errors
+    /// As [`Calibration::contact`].
+    pub fn greatest_depth(&self) -> Result<Option<f64>, Refusal> {
+        let contact = self.contact()?;
+        Ok(contact.map(|of| self.curve.deepest() - of.estimate))
+    }
+
+    /// The standard deviation of the depth of a probe that is set by this contact, in percent of the greatest depth; none where the contact
+    /// was not estimated.
     ///
     /// # Errors
     /// As [`Calibration::contact`].
     ///
     /// Implements: CAL-035.
-    pub fn depth_percent(&self) -> Result<Option<[f64; 2]>, Refusal> {
+    pub fn depth_percent(&self) -> Result<Option<f64>, Refusal> {
         let contact = self.contact()?.filter(|_| self.known.contact.is_none());
-        Ok(contact.map(|of| {
-            // 95 % of a normal law are within 1.96 standard deviations.
-            let sd = 0.5 * (of.ends[1] - of.ends[0]) / 1.96;
-            let depth = self.curve.deepest() - of.estimate;
-            [100.0 * sd / depth, depth]
-        }))
+        // 95 % of a normal law are within 1.96 standard deviations.
+        let sd = contact.map(|of| 0.5 * (of.ends[1] - of.ends[0]) / 1.96);
+        let both = sd.zip(self.greatest_depth()?);
+        Ok(both.map(|(sd, depth)| 100.0 * sd / depth))
     }
 }
 

@@ -226,7 +226,7 @@ fn axes<'a>(area: &Area<'a>, panel: &Panel, top: i32, right: i32) -> DrawingResu
 ///
 /// Implements: REP-031.
 fn tick(value: f64, [low, high]: [f64; 2]) -> String {
-    /// Characters that have a place left of a plot.
+    /// Most characters of a number in full.
     const MOST: usize = 7;
     let full = trimmed(value, 6);
     // Ticks are sums, which miss 0 by rounding.
