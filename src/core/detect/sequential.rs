@@ -48,6 +48,8 @@ pub struct Sequential<M> {
     hypotheses: usize,
     /// The largest magnitude of a signal in any row: |δ|² of none is above the number of rows times its square.
     largest: f64,
+    /// The weight of what is left of the last row.
+    weight: f64,
     rows: usize,
     missing: usize,
 }
@@ -99,6 +101,7 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> Sequential<M> {
             nuisances,
             hypotheses,
             largest: 0.0,
+            weight: 0.0,
             rows: 0,
             missing: 0,
         })
@@ -156,7 +159,16 @@ impl<M: AsRef<[f64]> + AsMut<[f64]>> Sequential<M> {
             *left += weighted * value;
             *along += weighted * innovation;
         }
+        self.weight = weight;
         Ok(())
+    }
+
+    /// The innovation: what the nuisances leave of the last row, of its residual and then of each signal; zeros before the first.
+    ///
+    /// Implements: SEQ-008.
+    pub fn innovation(&self) -> impl Iterator<Item = f64> {
+        let root = libm::sqrt(self.weight);
+        self.line(0).iter().map(move |number| root * number)
     }
 
     fn width(&self) -> usize {

@@ -14,6 +14,7 @@
 //! | `rates.rs` | rates of error of the largest of many |
 //! | `information.rs` | how well a place can be known |
 //! | `locate.rs` | a recorded sweep against a bank |
+//! | `neighbours.rs` | whether the noise of neighbouring samples of a live record is correlated |
 //! | `watch.rs` | a sweep against a bank while it is taken |
 //! | `reach.rs` | how deep, and how small |
 
@@ -24,6 +25,7 @@ mod detector;
 mod file;
 mod information;
 mod locate;
+mod neighbours;
 mod place;
 mod plan;
 mod rates;

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::Bank;
+use super::neighbours::Neighbours;
 use crate::detect::mixture::mixture_theta;
 use crate::detect::sequential::{Evidence, Sequential, Wald, memory};
 use crate::detect::{Decision, DetectError, posterior};
@@ -58,6 +59,7 @@ pub struct Watcher {
     pub(super) found: Sequential<Vec<f64>>,
     /// The same by the normal forces alone, and with the other sign of what the lateral ones have beside those of the reference.
     others: [Sequential<Vec<f64>>; 2],
+    neighbours: Neighbours,
     counts: SampleCounts,
     /// Σ F f and Σ f² of the normal forces over the noise.
     contact: [f64; 2],
@@ -194,6 +196,7 @@ impl Watcher {
             expected,
             found: begun()?,
             others: [begun()?, begun()?],
+            neighbours: Neighbours::new(maps),
             counts: SampleCounts::default(),
             contact: [0.0; 2],
             answered: None,
@@ -315,7 +318,9 @@ impl Watcher {
         }
         let sign = if channel == 0 { -1.0 } else { 1.0 };
         turned.push(sign * residual, nuisances, signals)?;
-        self.found.push(residual, nuisances, signals)
+        self.found.push(residual, nuisances, signals)?;
+        self.neighbours.push(channel, self.found.innovation());
+        Ok(())
     }
 
     /// Whether the test is over.
@@ -405,7 +410,22 @@ impl Watcher {
             (is_hidden, Cause::Channels),
         ];
         let causes = causes.into_iter().filter(|(is_so, _)| *is_so);
-        level.into_iter().chain(causes.map(|(_, cause)| cause))
+        let mut causes = level
+            .into_iter()
+            .chain(causes.map(|(_, cause)| cause))
+            .peekable();
+        let is_coloured = causes.peek().is_none() && self.is_coloured();
+        causes.chain(is_coloured.then_some(Cause::Coloured))
+    }
+
+    /// Whether correlated noise is much likelier than white noise, without an inclusion and with that of each place.
+    ///
+    /// Implements: SEQ-023.
+    pub(super) fn is_coloured(&self) -> bool {
+        let is_so = |place, squares| self.neighbours.theta(place, squares) >= MUCH_LIKELIER;
+        let without = self.found.residual();
+        is_so(None, without)
+            && (self.possible()).all(|(place, of)| is_so(Some(place), without - 2.0 * of.theta()))
     }
 
     /// Whether an inclusion is much likelier than none by these samples.

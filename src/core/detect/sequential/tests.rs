@@ -362,6 +362,35 @@ fn rows_that_nuisances_explain_leave_the_prior() {
     assert_near(evidence.gamma_squared, 4.5, 1e-14);
 }
 
+// Helmert's contrasts, of numbers up to 24 that are added 40 times at most: 40 · 24 roundings, of which most cancel.
+// Verifies: SEQ-008.
+#[test]
+fn an_innovation_is_what_the_rows_before_it_do_not_predict() {
+    let mut found = Sequential::new([0.0; memory(2, 1)], 2, 1).unwrap();
+    assert!(found.innovation().eq([0.0; 3]));
+    let mut before: [Vec<f64>; 3] = [const { Vec::new() }; 3];
+    for row in 0..40_u32 {
+        let noise = Generator::new(45, 0).normal(0, row.into());
+        let numbers = [20.0 + noise, f64::from(row % 7), -f64::from(row % 3)];
+        found.push(numbers[0], &[2.0], &numbers[1..]).unwrap();
+        let count = f64::from(row.max(1));
+        let factor = f64::from(row) / f64::from(row + 1);
+        for ((of, number), before) in found.innovation().zip(numbers).zip(&mut before) {
+            let mean = before.iter().sum::<f64>() / count;
+            assert_near(
+                of,
+                factor.sqrt() * (number - mean),
+                40.0 * 24.0 * f64::EPSILON,
+            );
+            before.push(number);
+        }
+    }
+    // A row that is missing leaves the last one.
+    let last: Vec<f64> = found.innovation().collect();
+    found.push(f64::NAN, &[2.0], &[1.0, 1.0]).unwrap();
+    assert!(found.innovation().eq(last));
+}
+
 // Verifies: SEQ-006, SEQ-007.
 #[test]
 fn what_no_row_can_be_is_refused() {

@@ -1,6 +1,11 @@
 //! Sweeps that are judged while they are taken.
 
+use std::f64::consts::PI;
+
+use palpate_asserts::assert_near;
+
 use super::locate::{SD, USUAL, all, deep, path, record, search};
+use super::neighbours::Neighbours;
 use super::*;
 use crate::detect::Decision;
 use crate::detect::sequential::{Evidence, Wald};
@@ -534,9 +539,51 @@ fn what_cannot_be_watched_is_refused() {
     watcher.push(0.0, None, Some(0.0), 1.0).unwrap();
 }
 
-/// Of so many sweeps back and forth over a gel with the inclusion of a map, or none, in noise of 0.4 N: how many are answered
-/// "inclusion", how many "no inclusion", and of how many the place of the inclusion was ever excluded.
-fn answers(trials: u64, map: Option<usize>) -> [u64; 3] {
+// The mean of exp(ρC − ρ²A/2) over ρ ~ N(0, 1/10) by sums of steps of 0.001 over ±5, which lose e^−125.
+// Verifies: SEQ-027.
+#[test]
+fn neighbours_that_are_alike_speak_for_correlated_noise() {
+    let left = |row: u64, place: u64| Generator::new(71, place).normal(0, row) + 0.4;
+    let (mut found, mut expected) = (Neighbours::new(2), [[0.0; 2]; 3]);
+    for row in 0..60 {
+        let [without, ..] = [left(row, 0); 1];
+        let signals = [1, 2].map(|place| without - left(row, place));
+        let innovation = [without].into_iter().chain(signals);
+        found.push((row % 2) as usize, innovation);
+        for (place, [products, squares]) in (0..).zip(&mut expected) {
+            *squares += left(row, place).powi(2);
+            if row >= 2 {
+                *products += left(row, place) * left(row - 2, place);
+            }
+        }
+    }
+    for (place, [products, squares]) in [None, Some(0), Some(1)].into_iter().zip(expected) {
+        let at = |step: i32| {
+            let correlation = 1e-3 * f64::from(step);
+            let prior = (-5.0 * correlation * correlation).exp() * (5.0 / PI).sqrt();
+            1e-3 * prior * (correlation * (products - 0.5 * correlation * squares)).exp()
+        };
+        let mean: f64 = (-5000..=5000).map(at).sum();
+        assert_near(found.theta(place, squares), mean.ln(), 1e-12);
+    }
+}
+
+/// How often sweeps were answered so, and what else came of them.
+#[derive(Debug, Default)]
+struct Answers {
+    inclusion: u64,
+    none: u64,
+    /// The place of the inclusion was excluded at some sample.
+    excluded: u64,
+    /// The noise was called correlated at some sample.
+    coloured: u64,
+    /// "Inclusion" was the answer at some sample.
+    told: u64,
+}
+
+/// The answers to so many sweeps back and forth, of so many samples each, over a gel with the inclusion of a map, or none, in noise of
+/// 0.4 N of this correlation between neighbours.
+fn answers(trials: u64, map: Option<usize>, samples: i32, correlation: f64) -> Answers {
     let (bank, sd) = (all(), 0.4);
     let question = WatchQuestion {
         noise_sd: Force::new(sd, sd),
@@ -544,47 +591,73 @@ fn answers(trials: u64, map: Option<usize>) -> [u64; 3] {
     };
     let fresh = Watcher::new(&bank, &question).unwrap();
     let table = map.map_or(&bank.reference, |map| &bank.maps()[map]).table();
-    let path = (0..240).map(|k| 1e-4 * f64::from((k % 120 - 60_i32).abs() - 30));
+    let path = (0..samples).map(|k| 1e-4 * f64::from((k % 120 - 60_i32).abs() - 30));
     let path: Vec<f64> = path.collect();
     let exact = table.sweep(4e-3, &path).unwrap();
     let generator = Generator::new(20_261_126, map.map_or(0, |map| map as u64 + 1));
-    let (mut noise, mut counts) = (vec![0.0; 2 * path.len()], [0; 3]);
+    let (mut noise, mut answers) = (vec![0.0; 2 * path.len()], Answers::default());
     for trial in 0..trials {
         generator.normals(trial, 0, &mut noise);
-        let (mut watcher, mut is_excluded) = (fresh.clone(), false);
+        for at in 2..noise.len() {
+            noise[at] =
+                correlation * noise[at - 2] + (1.0 - correlation * correlation).sqrt() * noise[at];
+        }
+        let mut watcher = fresh.clone();
+        let [mut is_excluded, mut is_coloured, mut is_told] = [false; 3];
         for (at, x) in path.iter().enumerate() {
             let normal = 1.1 * exact.normal[at] + 0.2 + sd * noise[2 * at];
             let lateral = Some(sd * noise[2 * at + 1]);
             watcher.push(*x, None, lateral, normal).unwrap();
             let there = map.and_then(|map| watcher.found.evidence().nth(map));
             is_excluded |= there.is_some_and(|of| watcher.is_excluded(of));
+            is_coloured |= watcher.is_coloured();
+            is_told |= correlation > 0.0
+                && watcher.answer().unwrap().decision == Some(Decision::Inclusion);
         }
         let decision = watcher.answer().unwrap().decision;
-        counts[0] += u64::from(decision == Some(Decision::Inclusion));
-        counts[1] += u64::from(decision == Some(Decision::NoInclusion));
-        counts[2] += u64::from(is_excluded);
+        answers.inclusion += u64::from(decision == Some(Decision::Inclusion));
+        answers.none += u64::from(decision == Some(Decision::NoInclusion));
+        answers.excluded += u64::from(is_excluded);
+        answers.coloured += u64::from(is_coloured);
+        answers.told += u64::from(is_told);
     }
-    counts
+    answers
 }
 
-/// Checks both rates by the upper ends of their 99 % intervals, and that they are no smaller than a tenth of what is stated: a bound that
-/// is never reached shows nothing.
+/// Checks the rates by the ends of their 99 % intervals, and that those of false answers are no smaller than a tenth of what is stated: a
+/// bound that is never reached shows nothing.
 fn check_rates(trials: u64) {
     let rate = |count| clopper_pearson(count, trials, 0.99).unwrap();
-    let without = answers(trials, None);
+    let without = answers(trials, None, 240, 0.0);
     println!("without: {without:?} of {trials}");
-    assert!(rate(without[0]).upper <= TEST[0], "{without:?}");
-    assert!(rate(without[0]).upper >= 0.1 * TEST[0], "{without:?}");
+    assert!(rate(without.inclusion).upper <= TEST[0], "{without:?}");
+    assert!(
+        rate(without.inclusion).upper >= 0.1 * TEST[0],
+        "{without:?}"
+    );
+    assert!(rate(without.coloured).lower <= 1e-3, "{without:?}");
     // In the middle, 4 mm wide, 3 and 4 mm deep.
     for map in [2, 7] {
-        let with = answers(trials, Some(map));
+        let with = answers(trials, Some(map), 240, 0.0);
         println!("with {map}: {with:?} of {trials}");
         assert!(
-            with[1] <= with[2] && rate(with[2]).upper <= TEST[1],
+            with.none <= with.excluded && rate(with.excluded).upper <= TEST[1],
             "{with:?}"
         );
-        assert!(rate(with[2]).upper >= 0.1 * TEST[1], "{with:?}");
+        assert!(rate(with.excluded).upper >= 0.1 * TEST[1], "{with:?}");
+        assert!(rate(with.coloured).lower <= 1e-3, "{with:?}");
     }
+}
+
+// After 480 rows, c is ln 1,000 for C/A = 0.19, which with a correlation of 0.5 is 7.7 standard deviations √(0.75/480) below C/A. Some answers
+// begin before that.
+// Verifies: SEQ-023, SEQ-027.
+#[test]
+fn no_answer_stays_in_noise_that_is_seen_to_be_correlated() {
+    let found = answers(200, None, 240, 0.5);
+    println!("{found:?}");
+    assert_eq!((found.inclusion, found.none, found.coloured), (0, 0, 200));
+    assert!(found.told > 0, "{found:?}");
 }
 
 // Verifies: SEQ-020, SEQ-021.
