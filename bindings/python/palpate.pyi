@@ -70,6 +70,7 @@ class _Located(_Place):
     chi_square_limits: list[float] | None
     degrees: float
     whiteness: float | None
+    theta_correlated: float | None
     level: float | None
     samples_in_air: list[list[int]]
     likeliest: _Parameters

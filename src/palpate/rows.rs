@@ -170,6 +170,7 @@ impl Rows {
         self.value("chi_square_limits", fit.limits.map(Vec::from));
         self.value("degrees", fit.degrees);
         self.value("whiteness", fit.whiteness);
+        self.value("theta_correlated", fit.theta_correlated);
         self.value("level", fit.level);
         self.in_air(&[fit.in_air]);
     }

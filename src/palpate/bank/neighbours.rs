@@ -2,10 +2,7 @@
 
 use std::iter::once;
 
-/// The variance of the correlation ρ before the sweep.
-///
-/// Implements: SEQ-027.
-const VARIANCE: f64 = 0.1;
+use crate::detect::correlation::theta_correlated;
 
 /// What no inclusion and each inclusion leave of a sample, against the same of the sample before it in the same channel.
 #[derive(Debug, Clone)]
@@ -38,13 +35,10 @@ impl Neighbours {
         }
     }
 
-    /// ln of the likelihood ratio of correlated to white noise, at most: without an inclusion or with that of a place, which leaves
-    /// `squares` of all samples together.
+    /// θ of correlated noise, without an inclusion or with that of a place, which leaves squares of this sum.
     ///
     /// Implements: SEQ-027.
     pub(super) fn theta(&self, place: Option<usize>, squares: f64) -> f64 {
-        let product = self.products[place.map_or(0, |place| place + 1)];
-        let spread = 1.0 + VARIANCE * squares.max(0.0);
-        0.5 * (VARIANCE * product * product / spread - libm::log(spread))
+        theta_correlated(self.products[place.map_or(0, |place| place + 1)], squares)
     }
 }

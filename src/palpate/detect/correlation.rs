@@ -7,6 +7,8 @@ use crate::stats::tails::chi_square_tail;
 
 /// The sum over the autocorrelation ends at this multiple of what it has come to.
 const WINDOW: f64 = 5.0;
+/// The variance of the correlation ρ of neighbours, before the record.
+const VARIANCE: f64 = 0.1;
 
 /// Σ xᵢ², and Σ xᵢ xᵢ₊ₖ / Σ xᵢ² of any lag k, 0 of a series of zeros.
 fn autocorrelation(series: &[f64]) -> (f64, impl Fn(usize) -> f64) {
@@ -44,6 +46,15 @@ pub fn ljung_box(series: &[f64], lags: usize) -> Result<f64, DetectError> {
     });
     let sum: f64 = terms.sum();
     chi_square_tail(samples * (samples + 2.0) * sum, lags as f64)
+}
+
+/// ln of the likelihood ratio of noise whose neighbours are correlated to white noise of variance 1, at most, by the sum of the products of
+/// neighbours and that of all squares; 0 where both are.
+///
+/// Implements: NUI-022.
+pub fn theta_correlated(products: f64, squares: f64) -> f64 {
+    let spread = 1.0 + VARIANCE * squares.max(0.0);
+    0.5 * (VARIANCE * products * products / spread - libm::log(spread))
 }
 
 /// How many samples of a finite series count as one: τ = 1 + 2 Σ ρ_k over the lags k below 5 τ (Sokal), at least 1.

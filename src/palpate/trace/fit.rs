@@ -6,7 +6,7 @@ use super::design::{Design, squares, whitened};
 use super::question::{Correlation, Noise, Question, Unknown};
 use super::{Trace, refused};
 use crate::detect::DetectError;
-use crate::detect::correlation::{correlation_length, ljung_box};
+use crate::detect::correlation::{correlation_length, ljung_box, theta_correlated};
 use crate::detect::nuisance::Nuisances;
 use crate::force::Force;
 use crate::refusal::Refusal;
@@ -17,6 +17,8 @@ use crate::stats::noncentral::{Tail, chi_square_point};
 pub const MISFIT_RATE: f64 = 1e-6;
 /// A blank sweep whose autocorrelations are less probable than this in white noise is taken for coloured.
 const WHITENESS: f64 = 1e-3;
+/// θ of correlated noise from which a record is taken for coloured: ln 100.
+const CORRELATED: f64 = 4.605_170_185_988_092;
 /// Lags of the test for white noise, at most a fifth of the samples.
 const LAGS: usize = 20;
 /// Least samples of a blank sweep.
@@ -37,6 +39,8 @@ pub struct Fit {
     pub degrees: f64,
     /// The probability of such autocorrelations in white noise, of the worse channel; none if the noise is stated to be white.
     pub whiteness: Option<f64>,
+    /// ln of the likelihood ratio of noise whose neighbours are correlated to white noise; none if the noise is stated to be white.
+    pub theta_correlated: Option<f64>,
     /// Σ F f/Σ f² of the normal forces; none if the sensor was set to zero on the gel.
     pub level: Option<f64>,
     /// Samples in air at the start and at the end of the file.
@@ -56,13 +60,18 @@ impl Fit {
         let (left, explained) = white.unexplained()?;
         let degrees = left.len() as f64 - explained.get() as f64;
         let chi_square = squares(&left);
-        let whiteness = match question.noise.correlation {
-            Correlation::None => None,
-            _ => Some(whiteness(
-                white.channels(&left),
-                LAGS.min(white.samples / 5),
-            )?),
+        let tested =
+            (question.noise.correlation != Correlation::None).then(|| white.channels(&left));
+        let lags = LAGS.min(white.samples / 5);
+        let whiteness = tested.map(|noise| whiteness(noise, lags)).transpose()?;
+        // Over the noise that the record itself has. The fit of smooth columns lowers the products by one each.
+        let scale = if chi_square > 0.0 {
+            degrees / chi_square
+        } else {
+            0.0
         };
+        let products = |noise| scale * neighbours(noise) + explained.get() as f64;
+        let theta_correlated = tested.map(|noise| theta_correlated(products(noise), degrees));
         let within = if question.is_unknown(Unknown::Variance) {
             STATED_WITHIN * STATED_WITHIN
         } else {
@@ -92,6 +101,7 @@ impl Fit {
             limits: limits.transpose()?,
             degrees,
             whiteness,
+            theta_correlated,
             level: touches.then(|| level(&forces, &expected)),
             in_air: ends,
         })
@@ -107,7 +117,10 @@ impl Fit {
     ///
     /// Implements: TRC-070, TRC-075, TRC-016, TRC-017.
     pub fn causes(&self) -> Vec<Cause> {
-        let is_coloured = self.whiteness.is_some_and(|p| p < MISFIT_RATE);
+        let is_coloured = self.whiteness.is_some_and(|p| p < MISFIT_RATE)
+            || self
+                .theta_correlated
+                .is_some_and(|theta| theta >= CORRELATED);
         let level = self.level.and_then(wrong_gain);
         let checks = [
             (self.in_air != [0; 2], Cause::InAir),
@@ -174,6 +187,12 @@ impl Noise {
         };
         told().map_err(|error| refused(error).in_file(&*blank.file))
     }
+}
+
+/// The sum of the products of neighbours in all channels.
+fn neighbours(noise: Force<&[f64]>) -> f64 {
+    let pairs = noise.into_array().into_iter().flat_map(|of| of.windows(2));
+    pairs.map(|pair| pair[0] * pair[1]).sum()
 }
 
 /// The smallest probability of white noise having such autocorrelations, of the channels that are there; 1 without lags.

@@ -52,8 +52,9 @@ pub fn check_options(arguments: &DetectArguments) -> Result<(), CliError> {
     if model.model == ModelName::Exact && files.figure.is_some() && files.bank.is_none() {
         refuse!("--figure with --model exact needs --bank");
     }
-    if arguments.traces.len() > 1 && model.model == ModelName::Exact {
-        refuse!("--model exact judges one trace");
+    let is_one = arguments.traces.len() == 1 && !arguments.traces[0].is_dir();
+    if !is_one && model.model == ModelName::Exact {
+        refuse!("--model exact judges one trace; give one file");
     }
     let is_csv = arguments.format == Format::Csv;
     if is_csv && (model.together || model.model == ModelName::Exact) {

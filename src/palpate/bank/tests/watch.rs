@@ -539,8 +539,8 @@ fn what_cannot_be_watched_is_refused() {
     watcher.push(0.0, None, Some(0.0), 1.0).unwrap();
 }
 
-// The mean of exp(ρC − ρ²A/2) over ρ ~ N(0, 1/10) by sums of steps of 0.001 over ±5, which lose e^−125.
-// Verifies: SEQ-027.
+// The mean of exp(ρP − ρ²A/2) over ρ ~ N(0, 1/10) by sums of steps of 0.001 over ±5, which lose e^−125.
+// Verifies: SEQ-027, NUI-022.
 #[test]
 fn neighbours_that_are_alike_speak_for_correlated_noise() {
     let left = |row: u64, place: u64| Generator::new(71, place).normal(0, row) + 0.4;
@@ -649,7 +649,7 @@ fn check_rates(trials: u64) {
     }
 }
 
-// After 480 rows, c is ln 1,000 for C/A = 0.19, which with a correlation of 0.5 is 7.7 standard deviations √(0.75/480) below C/A. Some answers
+// After 480 rows, θ_c is ln 1,000 for P/A = 0.19, which with a correlation of 0.5 is 7.7 standard deviations √(0.75/480) below P/A. Some answers
 // begin before that.
 // Verifies: SEQ-023, SEQ-027.
 #[test]

@@ -5,6 +5,7 @@ use crate::detect::Decision;
 use crate::detect::nuisance::Threshold;
 use crate::force_map::tests::table_of;
 use crate::stats::random::Generator;
+use crate::trace::design::difference;
 use palpate_asserts::assert_error;
 
 fn at(threshold: Threshold) -> f64 {
@@ -578,6 +579,68 @@ fn a_record_that_cannot_be_judged_has_a_cause() {
         let found = asked(&record, USUAL, stated);
         assert_eq!(found.causes, causes, "{found:?}");
         assert_eq!(found.decision.is_none(), !causes.is_empty());
+    }
+}
+
+// All is known but the size of the signal, so that what is left is z − (δᵀz/δᵀδ) δ.
+// Verifies: TRC-070, TRC-075, NUI-022.
+#[test]
+fn a_record_whose_neighbours_are_alike_is_coloured() {
+    let (without, with) = (gel(0.0), gel(0.5));
+    let positions: Vec<f64> = (0..81).map(|i| 2e-4 * f64::from(i) - 8e-3).collect();
+    let of = |map: &ForceTable| map.sweep(4e-3, &positions).unwrap();
+    let (exact, inclusion) = (of(&without), of(&with));
+    for (correlation, causes) in [(0.0_f64, &[][..]), (0.45, &[Cause::Coloured])] {
+        let generator = Generator::new(20_261_129, 1);
+        let noise = [0, 1].map(|channel| {
+            let mut state = generator.normal(channel, 0);
+            let next = |i| {
+                let step = (1.0 - correlation * correlation).sqrt() * generator.normal(channel, i);
+                state = correlation * state + step;
+                state
+            };
+            (1..82).map(next).collect::<Vec<f64>>()
+        });
+        let record = record(positions.clone(), |i| {
+            [
+                exact.lateral[i] + 0.1 * noise[0][i],
+                exact.normal[i] + 0.1 * noise[1][i],
+            ]
+        });
+        let asked = |correlation| {
+            let question = Question {
+                noise: self::noise(Some(Force::new(0.1, 0.1)), correlation),
+                ..question(4e-3)
+            };
+            let hypotheses = Hypotheses::of_tables(&without, &with).unwrap();
+            question.judge(hypotheses, &record).unwrap()
+        };
+        let found = asked(Correlation::OfRecord);
+        let signal = [
+            difference(&inclusion.lateral, &exact.lateral),
+            difference(&inclusion.normal, &exact.normal),
+        ];
+        let sum = |a: &[Vec<f64>; 2], b: &[Vec<f64>; 2], lag: usize| -> f64 {
+            let pairs = a.iter().zip(b).flat_map(|(a, b)| a.iter().zip(&b[lag..]));
+            pairs.map(|(a, b)| a * b).sum()
+        };
+        let size = sum(&signal, &noise, 0) / sum(&signal, &signal, 0);
+        let left = [0, 1].map(|channel| {
+            let pairs = noise[channel].iter().zip(&signal[channel]);
+            pairs.map(|(noise, signal)| noise - size * signal).collect()
+        });
+        let squares = sum(&left, &left, 0);
+        let products = 161.0 / squares * sum(&left, &left, 1) + 1.0;
+        let expected = products * products / (2.0 * 171.0) - 0.5 * 17.1_f64.ln();
+        assert!((found.fit.theta_correlated.unwrap() - expected).abs() < 1e-9);
+        assert_eq!(found.causes, causes, "{found:?}");
+        // The test of all lags sees nothing.
+        assert!(found.fit.whiteness.unwrap() > 1e-6);
+        let white = asked(Correlation::None);
+        assert_eq!(
+            (white.fit.theta_correlated, &white.causes[..]),
+            (None, &[][..])
+        );
     }
 }
 
