@@ -48,8 +48,8 @@ pub fn ljung_box(series: &[f64], lags: usize) -> Result<f64, DetectError> {
     chi_square_tail(samples * (samples + 2.0) * sum, lags as f64)
 }
 
-/// ln of the likelihood ratio of noise whose neighbours are correlated to white noise of variance 1, at most, by the sum of the products of
-/// neighbours and that of all squares; 0 where both are.
+/// θ_c: at most ln of the likelihood ratio of noise whose neighbours are correlated to white noise, from the sum of the products of
+/// neighbours and the sum of all squares, both over the variance of the noise.
 ///
 /// Implements: NUI-022.
 pub fn theta_correlated(products: f64, squares: f64) -> f64 {

@@ -582,7 +582,8 @@ fn a_record_that_cannot_be_judged_has_a_cause() {
     }
 }
 
-// All is known but the size of the signal, so that what is left is z − (δᵀz/δᵀδ) δ.
+// All is known but the size of the signal, so that what is left is z − (δᵀz/δᵀδ) δ. Forces of up to 3 N over 0.1 N lose 30 · 2⁻⁵³ each, and 162
+// products of them less than 10⁻¹².
 // Verifies: TRC-070, TRC-075, NUI-022.
 #[test]
 fn a_record_whose_neighbours_are_alike_is_coloured() {
